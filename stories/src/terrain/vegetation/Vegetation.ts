@@ -49,7 +49,7 @@ function sowFlowers(cell: GroundCell, most: number): void {
   const { random, shares } = cell
   const kind = Math.floor(FLOWERS * random())
   const other = Math.floor(FLOWERS * random())
-  const many = random() ** 3 * most * MathUtils.clamp(2 * shares.grass - 1, 0, 1)
+  const many = random() ** 2 * most * MathUtils.clamp(2 * shares.grass - 0.8, 0, 1)
   for (let i = 0; i < many; i++) {
     cell.plant(random(), random(), 0.5 + 0.6 * random(), random() < 0.8 ? kind : other)
   }
@@ -58,7 +58,7 @@ function sowFlowers(cell: GroundCell, most: number): void {
 /** Kinds of trees: their shape, and their part of the trees of a wood. */
 const TREES = [
   { shape: () => branchedSpruce(9, 6), part: 0.75, size: [0.8, 1.9] },
-  { shape: () => leafyTree('lime', 8), part: 0.25, size: [0.7, 1.4] }
+  { shape: () => leafyTree('lime', 14), part: 0.25, size: [0.7, 1.4] }
 ] as const
 
 function sowTrees(cell: GroundCell, most: number, { part, size }: (typeof TREES)[number]): void {
@@ -106,9 +106,9 @@ export class Vegetation extends Group {
     super()
     this.#terrain = terrain
     const uniforms = this.#uniforms
-    const near = cellsOf(2, 24, 49, 1, sowGrass)
-    const far = cellsOf(6, 30, 64, 2, sowGrass)
-    const flowers = cellsOf(4, 22, 40, 3, sowFlowers)
+    const near = cellsOf(2, 24, 64, 1, sowGrass)
+    const far = cellsOf(6, 30, 81, 2, sowGrass)
+    const flowers = cellsOf(4, 22, 90, 3, sowFlowers)
     this.add(createGrass('near', near, uniforms), createGrass('far', far, uniforms))
     this.add(createFlowers(flowers, uniforms))
     this.#trees = TREES.map((tree, i) => {

@@ -36,12 +36,12 @@ const STEM = [0.06, 0.11, 0.025] as const
 const HEART = [0.7, 0.42, 0.02] as const
 
 /** Radius of a flower and height of its stem [m], and number of its petals. */
-const RADIUS = 0.014
-const HEIGHT = 0.3
+const RADIUS = 0.017
+const HEIGHT = 0.36
 const SIDES = 7
 
 /** Radius of a flower that is half a pixel, at a distance of 1 m [m], and distances between which flowers go [m]. */
-const HALF_PIXEL = 0.0006
+const HALF_PIXEL = 0.0008
 const GOES = [28, 42] as const
 
 /** A flower on its stem: `petal` is 1 at the petals' ends, 0 in its heart, and −1 on the stem. */

@@ -26,7 +26,7 @@ const GREEN = [0.05, 0.098, 0.021] as const
 const STRAW = [0.225, 0.19, 0.085] as const
 
 /** Half of a blade's width at its root [m], and that of a pixel at a distance of 1 m: a blade is no narrower. */
-const HALF_WIDTH = 0.0028
+const HALF_WIDTH = 0.0032
 const HALF_PIXEL = 0.0004
 
 /** Geometry of a tuft. */
@@ -84,11 +84,11 @@ function tuft({ blades, radius, length, joints }: TuftOptions): BufferGeometry {
 /** Tufts near the viewer, and the coarser ones beyond: distances at which they come and go [m]. */
 export const GRASSES = {
   near: {
-    tuft: { blades: 11, radius: 0.09, length: [0.07, 0.3], joints: 2 },
+    tuft: { blades: 18, radius: 0.15, length: [0.12, 0.4], joints: 2 },
     reach: [-2, -1, 15, 23]
   },
   far: {
-    tuft: { blades: 16, radius: 0.3, length: [0.1, 0.3], joints: 1 },
+    tuft: { blades: 22, radius: 0.42, length: [0.14, 0.38], joints: 1 },
     reach: [13, 21, 55, 84]
   }
 } as const
@@ -131,7 +131,7 @@ export function createGrass(
   material.normalNode = varying(transformNormalToView(normal as never) as unknown as Vec3)
   const [green, straw] = [GREEN, STRAW].map(([r, g, b]) => vec3(r, g, b))
   const dry = tint.add(other.sub(0.5).mul(0.35)).clamp(0, 1)
-  const light = mix(0.5, 1.5, tip).mul(random.mul(0.4).add(0.8))
+  const light = mix(0.6, 1.9, tip).mul(random.mul(0.5).add(0.75))
   material.colorNode = varying(mix(green, straw, dry).mul(light)) as unknown as Node
   const mesh = new Mesh(plantGeometry(tuft(options as TuftOptions), cells), material)
   mesh.receiveShadow = true

@@ -144,7 +144,7 @@ export function createImpostors(
       .mod(SIDES)
       .div(SIDES)
   ).setInterpolation('flat' as never)
-  const at = vec2(uv().x.div(SIDES).add(side), uv().y).toConst()
+  const at = vec2(uv().x.div(SIDES).add(side), uv().y.oneMinus()).toConst()
   const color = texture(pictures.color.texture, at).toConst() as unknown as Node<'vec4'>
   const normal = texture(pictures.normal.texture, at).toConst() as unknown as Node<'vec4'>
   const solid = mix(SOLID[0], SOLID[1], smoothstep(80, FAR, varying(distance)))

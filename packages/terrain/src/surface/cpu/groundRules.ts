@@ -35,7 +35,8 @@ export function groundShares(place: PlaceOnCPU): SharesOnCPU {
     (1 - smoothstep(0.42, 0.62, Math.abs(sinLatitude)))
   const dryness = Math.min(Math.max(1.1 * subtropical - 0.35 + 1.4 * climate, 0), 1)
   const steepness = 1 - cosSlope + 0.05 * patch
-  const moisture = patch - dryness - 1.4 * climate - 0.15
+  const lowland = 1 - smoothstep(60, 420, overSea)
+  const moisture = patch - dryness - 1.4 * climate - 0.15 - 0.4 * lowland
   const layers = {
     snow: smoothstep(-150, 250, overSnow + 420 * patch) * (1 - smoothstep(0.26, 0.42, steepness)),
     rock: smoothstep(0.13, 0.24, steepness),

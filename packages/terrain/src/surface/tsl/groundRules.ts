@@ -10,11 +10,11 @@ const MOST_SPREAD = 450
 /** Share of the climate in where woods grow: fewer of them where it is dry [–]. Less: land from orbit is of one colour (*Terrain*). */
 const DRY_WOODS = 1.4
 
-/** Heights of stones above which they stand in grass: a fiftieth of the ground, more where patches are bare [–]. */
-const STONES = { from: 0.62, to: 0.72 }
-
 /** Part of the patches that is open where it is neither wet nor dry, over half of them [–]. */
 const OPEN = 0.15
+
+/** Moisture that land just above the sea lacks, and heights over it between which it does [m]: open plains below woods. */
+const LOWLAND = { dry: 0.4, from: 60, to: 420 }
 
 /** Deviation of patches, and size of a pixel that shows none of them: a share of it is woods then [m]. */
 const PATCH_DEVIATION = 0.35
@@ -74,6 +74,8 @@ export interface GroundClimate {
   /** Slope towards the equator. */
   readonly sunny: Float
   readonly dryness: Float
+  /** Share of a plain just above the sea. */
+  readonly lowland: Float
 }
 
 /** @param seaLevel - [m] */
@@ -101,14 +103,15 @@ export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimat
     .add(climate.mul(1.4))
     .clamp(0, 1)
     .toConst('dryness') as Float
-  return { overSea, overSnow, overTrees, sunny, dryness }
+  const lowland = smoothstep(LOWLAND.from, LOWLAND.to, overSea).oneMinus().toConst('lowland')
+  return { overSea, overSnow, overTrees, sunny, dryness, lowland }
 }
 
 /** Layers by height, slope, curvature, latitude and noise. */
 export function groundRules(
   place: GroundPlace,
   grain: Grain,
-  { overSea, overSnow, overTrees, dryness }: GroundClimate
+  { overSea, overSnow, overTrees, dryness, lowland }: GroundClimate
 ): GroundRules {
   const { patch, climate, cosSlope, hollow } = place
   const { stone, boulder, tuft, crown } = grain
@@ -123,7 +126,12 @@ export function groundRules(
     .toConst('steepness')
 
   const lost = grain.footprint.div(PATCHES_GONE).min(1).mul(PATCH_DEVIATION).toConst()
-  const moisture = patch.sub(dryness).sub(climate.mul(DRY_WOODS)).sub(OPEN).toConst()
+  const moisture = patch
+    .sub(dryness)
+    .sub(climate.mul(DRY_WOODS))
+    .sub(OPEN)
+    .sub(lowland.mul(LOWLAND.dry))
+    .toConst()
   const woods = smoothstep(
     lost.add(0.2).negate(),
     lost,
@@ -138,9 +146,7 @@ export function groundRules(
     spread.add(50).negate(),
     spread.add(450),
     overTrees.add(relief.mul(260))
-  )
-    .max(smoothstep(STONES.from, STONES.to, boulder.add(patch.mul(0.15))))
-    .toConst('bareness')
+  ).toConst('bareness')
   // A pixel as large as a beach is mostly of what lies behind it.
   const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief).add(spread)).toConst(
     'inland'
