@@ -5,6 +5,7 @@ import { airLine, PATHS, timeAir, timeBake, timeFirstFrame } from './air'
 import { cloudLine, timeClouds, timeNoise } from './clouds'
 import { timeEnvironment } from './environment'
 import { lightningLine, timeLightning } from './lightning'
+import { crackLines, findCracks } from './cracks'
 import { measureCloudMemory } from './memory'
 import { rainLine, timeRain } from './rain'
 import { measureShaders } from './shaders'
@@ -12,7 +13,7 @@ import { shaftLine, timeShafts } from './shafts'
 import { timeShells } from './shell'
 import { skyLine, timeSky } from './sky'
 import { median } from './statistics'
-import { terrainLine, timeTerrain } from './terrain'
+import { terrainLine, timeTerrain, timeVegetation, vegetationLine } from './terrain'
 import { timeValley, valleyLines } from './valley'
 
 const { values, positionals } = parseArgs({
@@ -87,7 +88,14 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
   async terrain() {
     const terrain = await timeTerrain(device, size, frames)
     for (const cost of terrain) log(terrainLine(cost))
-    return { terrain }
+    const vegetation = await timeVegetation(device, size, frames)
+    log(vegetationLine(vegetation))
+    return { terrain, vegetation }
+  },
+  async cracks() {
+    const search = await findCracks(device, 10_000, 400)
+    log(crackLines(search))
+    return { cracks: search }
   },
   async shell() {
     const shells = await timeShells(device, size, frames)
@@ -129,7 +137,9 @@ for (const name of only) {
 }
 log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
 const result: Record<string, unknown> = { device: device.name }
-for (const name of only.length > 0 ? only : Object.keys(parts)) {
+// Cracks are no figure of cost, and take minutes: only when asked for.
+const all = Object.keys(parts).filter(name => name !== 'cracks')
+for (const name of only.length > 0 ? only : all) {
   Object.assign(result, await parts[name]())
 }
 if (values.json) console.log(JSON.stringify(result, null, 2))

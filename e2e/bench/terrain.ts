@@ -8,6 +8,7 @@ import {
 import { MountainHeights, Terrain } from '@welkin/terrain'
 import { Matrix4, PerspectiveCamera, RenderTarget, Scene } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
+import { Vegetation } from '../../stories/src/terrain/vegetation/Vegetation'
 import {
   finished,
   gpuMilliseconds,
@@ -25,6 +26,9 @@ const VIEWS = [
 ] as const
 
 const PLACE = { longitude: 1, latitude: 47 }
+/** A clearing in woods, for the sample of vegetation. */
+const MEADOW = { name: 'meadow', height: 2, pitch: -4, longitude: 0.494, latitude: 46.35 } as const
+
 const WARM_UP = 10
 
 /** Way flown in a frame, in heights above the ground: at 60 frames a second as high in a second. */
@@ -91,9 +95,19 @@ class TerrainBench {
     return this.terrain
   }
 
-  look({ height, pitch }: (typeof VIEWS)[number], way = 0): void {
+  /** Plants the whole sample of vegetation. */
+  plant(): Vegetation {
+    const plants = new Vegetation(this.renderer, this.terrain!)
+    this.#scene.add(plants)
+    plants.update(this.#camera, 0, Infinity)
+    return plants
+  }
+
+  look(view: (typeof VIEWS)[number] | typeof MEADOW, way = 0): void {
+    const { height, pitch } = view
     const { ellipsoid } = this.#atmosphere
-    const place = { ...PLACE, latitude: PLACE.latitude + (way * height) / 111_000 }
+    const { longitude, latitude } = 'longitude' in view ? view : PLACE
+    const place = { longitude, latitude: latitude + (way * height) / 111_000 }
     const ground = this.terrain?.heightAt(place.longitude, place.latitude) ?? 0
     const camera = this.#camera
     ellipsoid.geodeticToECEF({ ...place, height: ground + height }, camera.position)
@@ -225,5 +239,58 @@ export function terrainLine(cost: TerrainCost): string {
     `, with a shadow map ${ms(cost.shadowMs)}   pages in flight ${ms(cost.pagesMs)}, at most ${ms(cost.pagesMostMs)}` +
     `   CPU ${ms(cost.updateMs)}   first picture ${cost.firstMs.toFixed(0)} ms, ${firstFrames} frames` +
     `   ${tiles} tiles in view, ${pages} pages, ${(bytes / 1e6).toFixed(0)} MB`
+  )
+}
+
+/** Cost of the stories' sample of vegetation, at eye height in a clearing. */
+export interface VegetationCost {
+  /** A frame without and with it, GPU, no shadow map [ms]. */
+  withoutMs: number
+  ms: number
+  /** The same with a shadow map of 2048 texels [ms]. */
+  withoutShadowMs: number
+  shadowMs: number
+  /** Time of planting all that is in view, CPU [ms]. */
+  plantMs: number
+}
+
+/** Times grass, flowers and trees of the stories. */
+export async function timeVegetation(
+  device: HeadlessDevice,
+  size: readonly [number, number],
+  frames: number
+): Promise<VegetationCost> {
+  const renderer = await device.renderer(...size, { reversedDepthBuffer: true })
+  renderer.highPrecision = true
+  const bench = new TerrainBench(renderer, size)
+  const terrain = bench.add(12)
+  bench.look(MEADOW)
+  for (let i = 0; !terrain.isFull && i < MOST_FRAMES; i++) {
+    bench.draw()
+    await finished(renderer)
+  }
+  const both = async (): Promise<[number, number]> => {
+    bench.castsShadow = false
+    const without = median(await bench.time(frames))
+    bench.castsShadow = true
+    return [without, median(await bench.time(frames))]
+  }
+  const [withoutMs, withoutShadowMs] = await both()
+  const start = performance.now()
+  const plants = bench.plant()
+  const plantMs = performance.now() - start
+  const [ms, shadowMs] = await both()
+  plants.dispose()
+  bench.dispose()
+  release(renderer)
+  return { withoutMs, ms, withoutShadowMs, shadowMs, plantMs }
+}
+
+/** Line of a report. */
+export function vegetationLine(cost: VegetationCost): string {
+  const ms = (value: number): string => `${value.toFixed(2)} ms`
+  return (
+    `vegetation, in a meadow   ${ms(cost.ms)}, without it ${ms(cost.withoutMs)}, with a shadow map ${ms(cost.shadowMs)}` +
+    `, without it ${ms(cost.withoutShadowMs)}   planting ${cost.plantMs.toFixed(0)} ms`
   )
 }

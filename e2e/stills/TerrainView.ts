@@ -11,6 +11,7 @@ import { MountainHeights, Terrain, type GroundMaps } from '@welkin/terrain'
 import { MathUtils, PerspectiveCamera, RenderTarget, Scene } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { Vegetation } from '../../stories/src/terrain/vegetation/Vegetation'
 import { cobbles } from './cobbles'
 import type { TerrainStill } from './terrains'
 import { readPicture } from './readPicture'
@@ -26,6 +27,7 @@ export class TerrainView {
   readonly #sun: SunDirectionalLight
   readonly #terrain: Terrain
   readonly #maps: GroundMaps | null = null
+  readonly #plants: Vegetation | null = null
   readonly #camera: PerspectiveCamera
   readonly #pipeline: RenderPipeline
   readonly #exposure: AutoExposureNode
@@ -54,6 +56,7 @@ export class TerrainView {
     const scene = new Scene()
     const sun = (this.#sun = this.#sunAt(camera))
     scene.add(sun, sun.target, new SkyLightProbe(atmosphere), terrain)
+    if (view.plants) scene.add((this.#plants = new Vegetation(renderer, terrain)))
     scene.backgroundNode = skyBackground(atmosphere)
     scene.fogNode = aerialPerspectiveFog(atmosphere)
     this.#exposure = autoExposure(pass(scene, camera, { samples: 4 }), atmosphere)
@@ -86,6 +89,7 @@ export class TerrainView {
   /** Draws all pages: the first picture is full. */
   bake(): void {
     this.#terrain.update(this.renderer, this.#camera, Infinity)
+    this.#plants?.update(this.#camera, 0, Infinity)
   }
 
   draw(): void {
@@ -104,6 +108,7 @@ export class TerrainView {
     this.#exposure.dispose()
     this.#terrain.dispose()
     this.#maps?.dispose()
+    this.#plants?.dispose()
     this.#sun.dispose()
     this.#atmosphere.dispose()
     this.#target.dispose()

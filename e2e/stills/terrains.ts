@@ -15,6 +15,8 @@ export interface TerrainStill {
     sun: { elevation: number; azimuth: number }
     /** True to pave the grass with a user's maps. */
     cobbles?: boolean
+    /** True for grass, flowers and trees of the stories' sample. */
+    plants?: boolean
   }
 }
 
@@ -24,9 +26,21 @@ export const terrains: TerrainStill[] = (
     ['grass', 'a meadow: blades and tufts, no repetition', [0.494, 46.35, 1.7], [338, -8]],
     ['feet', "the same meadow before one's feet: detail to 1 cm", [0.494, 46.35, 1.7], [338, -50]],
     ['cobbles', 'maps of a user in place of grass, with depth', [0.494, 46.35, 1.7], [338, -35]],
+    [
+      'meadow',
+      'the same with the sample of vegetation: blades, flowers',
+      [0.494, 46.35, 1.7],
+      [338, -8]
+    ],
+    [
+      'woods',
+      'an edge of woods: trees, and their pictures far away',
+      [0.494, 46.35, 12],
+      [338, -8]
+    ],
     ['scree', 'stones between meadow and rock', [0.508, 46.65, 1.7], [275, -12]],
-    ['snow', 'snow and rock about a summit', [0.438, 47.41, 1.7], [200, -8]],
-    ['shore', 'sand, wet where the sea begins', [1.32, 46.19, 1.7], [350, -8]],
+    ['snow', 'snow and rock about a summit', [0.428, 47.372, 1.7], [200, -8]],
+    ['shore', 'sand, wet where the sea begins', [2.1411, 46.19, 1.7], [350, -8]],
     ['1km', 'slopes, valleys and cliffs in low sun', [0.494, 46.35, 2e3], [338, -12]],
     ['10km', 'ranges without shimmer or grid', [0.45, 46.9, 1e4], [0, -12]],
     ['400km', 'a mountainous coast from orbit: woods, steppe, no net', [1, 44.5, 4e5], [0, -25]],
@@ -42,6 +56,7 @@ export const terrains: TerrainStill[] = (
     heading,
     pitch,
     sun: { elevation: 28, azimuth: heading + (name === 'glint' ? 10 : 100) },
-    cobbles: name === 'cobbles'
+    cobbles: name === 'cobbles',
+    plants: name === 'meadow' || name === 'woods'
   }
 }))

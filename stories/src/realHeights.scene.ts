@@ -1,5 +1,5 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { GridHeights, Terrain, TerrariumTiles, tileUrl } from '@welkin/terrain'
+import { GridHeights, heightsFromGeoTIFF, Terrain, TerrariumTiles, tileUrl } from '@welkin/terrain'
 import { PerspectiveCamera, Scene, Vector3 } from 'three'
 import { Air } from './air'
 import { prepareShadow } from './globe/sunShadow'
@@ -54,9 +54,22 @@ export const VIEWS = {
   }
 } satisfies Record<string, GroundView>
 
+/** The same views about another place. */
+function viewsAbout({ longitude, latitude }: typeof VILLAGE): typeof VIEWS {
+  const moved = Object.entries<GroundView>(VIEWS).map(([name, view]) => [
+    name,
+    {
+      ...view,
+      longitude: view.longitude + longitude - VILLAGE.longitude,
+      latitude: view.latitude + latitude - VILLAGE.latitude
+    }
+  ])
+  return Object.fromEntries(moved) as typeof VIEWS
+}
+
 export interface RealHeightsArgs extends RendererArgs, TimeArgs {
   view: keyof typeof VIEWS
-  /** Template of Terrarium tiles; empty for the grid that comes with the stories. */
+  /** Template of Terrarium tiles, or a GeoTIFF; empty for the grid that comes with the stories. */
   url: string
   wireframe: boolean
 }
@@ -121,8 +134,40 @@ async function problemOf(url: string): Promise<string | undefined> {
   }
 }
 
-/** Heights of the arguments, and a line about them. */
-async function heightsOf({ url }: RealHeightsArgs) {
+/** Heights that are drawn. */
+interface Given {
+  readonly heights: GridHeights | TerrariumTiles
+  /** Line about them. */
+  readonly note: string
+  /** Middle of a file [°]. */
+  readonly middle?: { longitude: number; latitude: number }
+}
+
+/** Heights of a GeoTIFF in degrees or in a projection that is near enough to them. */
+async function openGeoTIFF(url: string): Promise<Given> {
+  const { fromUrl } = await import('geotiff')
+  // #region GeoTIFF
+  // #shown import { fromUrl } from 'geotiff'
+  // #shown const url = 'heights.tif'
+  const file = await fromUrl(url)
+  const image = await file.getImage()
+  const heights = await heightsFromGeoTIFF(image, { outside: 0 })
+  // #endregion
+  const [west, south, east, north] = image.getBoundingBox()
+  const middle = { longitude: (west + east) / 2, latitude: (south + north) / 2 }
+  return { heights, middle, note: `${new URL(url, document.baseURI).pathname}` }
+}
+
+/** Heights of the arguments. */
+async function heightsOf({ url }: RealHeightsArgs): Promise<Given> {
+  if (/\.tiff?($|[?#])/i.test(url)) {
+    try {
+      return await openGeoTIFF(url)
+    } catch (error) {
+      const grid = await loadGrid()
+      return { heights: grid, note: `No GeoTIFF: ${String(error)}. The local grid instead.` }
+    }
+  }
   const problem = url === '' ? undefined : await problemOf(url)
   if (url !== '' && problem === undefined) {
     const tiles = new TerrariumTiles(url, { maxZoom: 14 })
@@ -138,13 +183,13 @@ export async function createRealHeights(
   canvas: HTMLCanvasElement,
   args: RealHeightsArgs
 ): Promise<SceneHandle<RealHeightsArgs>> {
-  const { heights, note } = await heightsOf(args)
+  const { heights, note, middle = VILLAGE } = await heightsOf(args)
   const renderer = await createRenderer(canvas, args.forceWebGL)
   const scene = new Scene()
   const camera = new PerspectiveCamera(50, 1, 0.2, 1e8)
   const current = { ...args }
   const atmosphere = new Atmosphere()
-  atmosphere.place(VILLAGE)
+  atmosphere.place(middle)
   const air = new Air(renderer, scene, camera, args.path, atmosphere)
   const terrain = new Terrain(atmosphere, heights, args.frame ? STILL : {})
   terrain.castShadow = terrain.receiveShadow = true
@@ -153,7 +198,7 @@ export async function createRealHeights(
 
   const place = new Vector3()
   const groundAt = (x: number, z: number): number => terrain.heightBelow(place.set(x, 0, z))
-  const isLocal = !(heights instanceof TerrariumTiles)
+  const isLocal = !(heights instanceof TerrariumTiles) && middle === VILLAGE
   // On tiles the village's ground is not there yet.
   const village = isLocal ? createVillage(groundAt, { x: 0, z: 0 }) : undefined
   if (village !== undefined) scene.add(village.object)
@@ -176,7 +221,7 @@ export async function createRealHeights(
     air,
     terrain,
     ground,
-    views: VIEWS,
+    views: viewsAbout(middle),
     apply,
     dispose() {
       overlay?.remove()

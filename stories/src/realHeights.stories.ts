@@ -15,10 +15,10 @@ const meta: Meta<RealHeightsArgs> = {
   argTypes: {
     view: { name: 'Place', ...choiceOf(VIEWS) },
     url: {
-      name: 'Terrarium tiles',
+      name: 'Terrarium tiles, GeoTIFF',
       control: 'text',
       description:
-        'Template with {z}, {x} and {y}, such as https://…/{z}/{x}/{y}.png; empty for the local grid'
+        'Template with {z}, {x} and {y}, such as https://…/{z}/{x}/{y}.png, or a GeoTIFF in degrees, such as https://…/heights.tif; empty for the local grid'
     },
     wireframe: { name: 'Wireframe', control: 'boolean' },
     ...timeArgTypes,

@@ -1,6 +1,8 @@
-import { Atmosphere } from '@welkin/atmosphere'
+import { Atmosphere, heightFog } from '@welkin/atmosphere'
+import { cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import { MountainHeights, Terrain, terrainView } from '@welkin/terrain'
 import { PerspectiveCamera, Scene } from 'three'
+import { shadow } from 'three/tsl'
 import { Air } from './air'
 import { prepareShadow } from './globe/sunShadow'
 import {
@@ -12,6 +14,7 @@ import {
 } from './scene'
 import { GroundCamera } from './terrain/GroundCamera'
 import { groundHandle } from './terrain/groundHandle'
+import { Vegetation } from './terrain/vegetation/Vegetation'
 import type { GroundView } from './terrain/viewAlong'
 
 export const VIEWS = {
@@ -25,7 +28,7 @@ export const VIEWS = {
   },
   shore: {
     label: 'Shore, 30 m',
-    longitude: 1.32,
+    longitude: 2.1411,
     latitude: 46.19,
     height: 30,
     heading: 350,
@@ -33,8 +36,8 @@ export const VIEWS = {
   },
   summit: {
     label: 'Summit, 2 m',
-    longitude: 0.438,
-    latitude: 47.41,
+    longitude: 0.428,
+    latitude: 47.372,
     height: 2,
     heading: 200,
     pitch: -5
@@ -82,6 +85,12 @@ export interface TerrainArgs extends RendererArgs, TimeArgs {
   /** Wind over the sea [m/s]. */
   windSpeed: number
   shadows: boolean
+  /** Broken clouds, which summits reach into. */
+  clouds: boolean
+  /** Mist over the valleys: extinction at sea level [1/km]. */
+  mist: number
+  /** Grass, flowers and trees about the viewer. */
+  vegetation: boolean
 }
 
 /** Way of the tour, and the time that it takes [s]. */
@@ -90,6 +99,10 @@ const TOUR_SECONDS = 75
 
 /** Place of the world's origin [°]. */
 const ORIGIN = { longitude: 0.494, latitude: 46.35 }
+
+/** Clouds from below the snow line up [m], and height over which mist thins to 1/e [m]. */
+const CLOUDS = { baseAltitude: 2300, topAltitude: 3500, coverage: 0.4 }
+const MIST_FALLOFF = 220
 
 /** Fewer cells and texels in a still: a software renderer draws it. */
 const STILL = { resolution: 16, pageMemory: 100, pagesPerFrame: 4 }
@@ -105,7 +118,9 @@ export async function createTerrain(
   const current = { ...args }
   const atmosphere = new Atmosphere()
   atmosphere.place(ORIGIN)
-  const air = new Air(renderer, scene, camera, args.path, atmosphere)
+  const air = new Air(renderer, scene, camera, args.clouds ? 'post' : args.path, atmosphere)
+  const mist = heightFog({ base: 0, falloff: MIST_FALLOFF, density: 0 })
+  if (args.mist > 0) atmosphere.add(mist)
   const options = args.frame ? STILL : {}
   // #region terrain
   const heights = new MountainHeights({ seed: 513 }) // a function: nothing is loaded
@@ -115,16 +130,36 @@ export async function createTerrain(
   scene.add(terrain)
   // #endregion
   prepareShadow(air.sun)
+  if (args.clouds && air.post !== undefined) {
+    const { color, depth, pipeline } = air.post
+    const layers = cloudPreset('fairWeather')
+    layers.at(0).set(CLOUDS)
+    const node = clouds(color, depth, camera, atmosphere, layers)
+    pipeline.outputNode = node
+    Object.assign(air.sun.shadow, { shadowNode: cloudShadow(node, shadow(air.sun)) })
+    cloudSkyLight(air.sky, node)
+  }
   const groundColor = terrain.material.colorNode
   let color: keyof typeof COLORS = 'ground'
 
   const ground = new GroundCamera(camera, canvas, terrain, args.frame)
+  let plants: Vegetation | null = null
+  const setPlants = (isThere: boolean): void => {
+    if (isThere === (plants !== null)) return
+    if (plants !== null) {
+      scene.remove(plants)
+      plants.dispose()
+      plants = null
+    } else scene.add((plants = new Vegetation(renderer, terrain)))
+  }
 
   const apply = (): void => {
     applyTime(renderer, air, current)
     terrain.material.wireframe = current.wireframe
     terrain.windSpeed = current.windSpeed
+    mist.density = current.mist / 1000
     terrain.castShadow = terrain.receiveShadow = current.shadows
+    setPlants(current.vegetation)
     ground.tour(current.tour ? TOUR.map(name => VIEWS[name]) : null, TOUR_SECONDS)
     if (current.color === color) return
     color = current.color
@@ -140,6 +175,11 @@ export async function createTerrain(
     terrain,
     ground,
     views: VIEWS,
-    apply
+    apply,
+    follow() {
+      // A still is planted at once.
+      plants?.update(camera, args.frame ? 0 : performance.now() / 1000, args.frame ? Infinity : 3)
+    },
+    dispose: () => setPlants(false)
   })
 }

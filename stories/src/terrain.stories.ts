@@ -7,7 +7,11 @@ import type { TerrainArgs } from './terrain.scene'
 
 const meta: Meta<TerrainArgs> = {
   title: 'Terrain',
-  render: mount(createTerrain, storyCode(['terrain.scene.ts', 'terrain'])),
+  render: mount(
+    createTerrain,
+    storyCode(['terrain.scene.ts', 'terrain']),
+    ({ clouds, mist }: TerrainArgs) => [clouds, mist > 0].join()
+  ),
   argTypes: {
     view: {
       name: 'Place',
@@ -18,6 +22,9 @@ const meta: Meta<TerrainArgs> = {
     tour: { name: 'Shore, summit, orbit', control: 'boolean' },
     windSpeed: { name: 'Wind [m/s]', control: { type: 'range', min: 0, max: 30, step: 0.5 } },
     shadows: { name: 'Shadows', control: 'boolean' },
+    clouds: { name: 'Clouds', control: 'boolean' },
+    mist: { name: 'Mist [1/km]', control: { type: 'range', min: 0, max: 6, step: 0.1 } },
+    vegetation: { name: 'Grass, flowers, trees', control: 'boolean' },
     ...timeArgTypes,
     ...rendererArgTypes
   },
@@ -28,6 +35,9 @@ const meta: Meta<TerrainArgs> = {
     tour: false,
     windSpeed: 7,
     shadows: true,
+    clouds: false,
+    mist: 0,
+    vegetation: false,
     day: Date.UTC(2026, 5, 21),
     hour: 15.5,
     exposure: 0,
@@ -41,11 +51,20 @@ export default meta
 
 type Story = StoryObj<TerrainArgs>
 
-/** Two metres above the ground, among mountains. */
+/** Two metres above the ground, among mountains: the ground alone. */
 export const Meadow: Story = {}
+
+/** The same with grass, flowers and trees on it: a sample, no part of the package. */
+export const Plants: Story = { name: 'Meadow and woods', args: { vegetation: true } }
 
 /** One take: a shore, a summit, orbit. */
 export const Take: Story = { name: 'Shore to orbit', args: { view: 'shore', tour: true } }
+
+/** Summits in clouds, valleys in mist. */
+export const Weather: Story = {
+  name: 'Clouds and mist',
+  args: { view: 'range', clouds: true, mist: 1.5, hour: 7 }
+}
 
 /** Above the ridges. */
 export const Range: Story = { args: { view: 'range' }, tags: ['screenshot', 'webgpu-only'] }

@@ -43,10 +43,13 @@ gpuTest('light of the sun that a hollow keeps is drawn, in its colours', async t
   const camera = new PerspectiveCamera(40, 1, 0.1, 10)
   camera.position.z = 1
   const picture = new RenderTarget(8, 8, { type: FloatType })
-  const draw = async (material: MeshStandardNodeMaterial): Promise<ArrayLike<number>> => {
+  const draw = async (
+    material: MeshStandardNodeMaterial,
+    ao: number
+  ): Promise<ArrayLike<number>> => {
     material.metalness = 0
     material.colorNode = vec4(...albedo, 1)
-    material.aoNode = float(share)
+    material.aoNode = float(ao)
     const mesh = new Mesh(new PlaneGeometry(4, 4), material)
     scene.add(mesh)
     renderer.setRenderTarget(picture)
@@ -55,13 +58,17 @@ gpuTest('light of the sun that a hollow keeps is drawn, in its colours', async t
     scene.remove(mesh)
     return renderer.readRenderTargetPixelsAsync(picture, 4, 4, 1, 1)
   }
-  const bounced = await draw(new GroundMaterial())
-  const plain = await draw(new MeshStandardNodeMaterial())
+  const bounced = await draw(new GroundMaterial(), share)
+  const plain = await draw(new GroundMaterial(), 1)
+  // Highlights of ground are of single scattering.
+  const standard = await draw(new MeshStandardNodeMaterial(), 1)
   const light = 2 * Math.sin(elevation)
   for (const [n, reflectance] of albedo.entries()) {
     const kept = share * (onCPU.bouncedLight(reflectance, share) - 1) * light
     const expected = (kept * reflectance) / Math.PI
     const found = bounced[n] - plain[n]
     if (!(Math.abs(found - expected) < 1e-4)) throw new Error(`${found} in place of ${expected}`)
+    const change = Math.abs(plain[n] / standard[n] - 1)
+    if (!(change < 0.01)) throw new Error(`${plain[n]} without hollows, by three ${standard[n]}`)
   }
 })

@@ -21,6 +21,8 @@ interface GroundScene<Args extends RendererArgs, Views extends Record<string, Gr
   readonly apply: () => void
   /** Frames to draw before a still, ahead of those that all have. */
   readonly load?: () => Promise<void>
+  /** Moves on what follows the camera, ahead of each frame. */
+  readonly follow?: () => void
   /** Frees what else the scene has made. */
   readonly dispose?: () => void
 }
@@ -37,12 +39,14 @@ export function groundHandle<Args extends RendererArgs, Views extends Record<str
   views,
   apply,
   load,
+  follow,
   dispose
 }: GroundScene<Args, Views>): SceneHandle<Args & { view: keyof Views }> {
   apply()
   ground.goTo(views[current.view])
   const draw = (): void => {
     ground.update(air.sun)
+    follow?.()
     air.render()
   }
   return storyHandle<Args & { view: keyof Views }>({

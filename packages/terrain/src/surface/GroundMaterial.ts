@@ -1,5 +1,15 @@
 import { airAtVertices } from '@welkin/atmosphere'
-import { diffuseColor, mix, normalView, specularColor, specularColorBlended, vec3 } from 'three/tsl'
+import {
+  BRDF_GGX,
+  diffuseColor,
+  mix,
+  normalView,
+  positionViewDirection,
+  roughness,
+  specularColor,
+  specularColorBlended,
+  vec3
+} from 'three/tsl'
 import {
   MeshStandardNodeMaterial,
   PhysicalLightingModel,
@@ -18,13 +28,43 @@ type Variable = Vec3 & { assign(value: Vec3): void; addAssign(value: Vec3): void
 /** Part of the context of three's lights that is used. */
 interface LightingContext {
   readonly ambientOcclusion: Float
+  readonly irradiance: Vec3
   readonly reflectedLight: { readonly indirectDiffuse: Variable }
 }
 
-/** Light as of three's standard materials, and what the sides of hollows throw at each other of the sun's light and the sky's. */
+/** Colour of what is no metal. */
+const albedo = (): Vec3 => (diffuseColor as unknown as { rgb: Vec3 }).rgb
+
+/** Part of three's builder that is used. */
+interface EnvironmentBuilder {
+  readonly environmentNode: unknown
+  readonly material: { readonly envNode: unknown }
+}
+
+/** Reflected light of three's lights. */
+interface ReflectedLight {
+  readonly directDiffuse: Variable
+  readonly directSpecular: Variable
+  readonly indirectDiffuse: Variable
+}
+
+/** Start of all models of light: every light, then what comes from all sides. */
+const startOfAll = (
+  Object.getPrototypeOf(PhysicalLightingModel.prototype) as {
+    start(this: PhysicalLightingModel, builder: NodeBuilder): void
+  }
+).start
+
+/**
+ * Light as of three's standard materials, and what the sides of hollows throw at each other of the sun's light and the sky's.
+ *
+ * Where no environment is mirrored, highlights are of single scattering: what more would add is a thousandth of the light on ground, for a
+ * look-up and matrices of metals in each pixel.
+ */
 class GroundLightingModel extends PhysicalLightingModel {
   /** Irradiance of the ground about a pixel by lights that have a direction. */
   #sunlight: Variable | null = null
+  #mirrors = false
 
   /** @param ground - Normal of the ground without its stones, in the view. */
   constructor(readonly ground: Vec3) {
@@ -32,25 +72,54 @@ class GroundLightingModel extends PhysicalLightingModel {
   }
 
   override start(builder: NodeBuilder): void {
+    const { environmentNode, material } = builder as unknown as EnvironmentBuilder
+    this.#mirrors = Boolean(environmentNode || material.envNode)
     this.#sunlight = vec3(0).toVar('sunlightOnGround') as unknown as Variable
-    super.start(builder)
+    if (this.#mirrors) super.start(builder)
+    else startOfAll.call(this, builder)
   }
 
   override direct(light: LightingModelDirectInput, builder: NodeBuilder): void {
     const color = light.lightColor as Vec3
-    const cosine = this.ground.dot(light.lightDirection as Vec3).max(0) as unknown as Float
+    const direction = light.lightDirection as Vec3
+    const cosine = this.ground.dot(direction).max(0) as unknown as Float
     this.#sunlight?.addAssign(color.mul(cosine))
-    super.direct(light, builder)
+    if (this.#mirrors) {
+      super.direct(light, builder)
+      return
+    }
+    const { directDiffuse, directSpecular } = light.reflectedLight as unknown as ReflectedLight
+    const irradiance = color.mul(normalView.dot(direction).clamp()).toConst() as Vec3
+    const halfway = direction.add(positionViewDirection).normalize()
+    const slant = positionViewDirection.dot(halfway).clamp().oneMinus().toConst() as Float
+    const square = slant.mul(slant).toConst()
+    const reflectance = specularColor as unknown as Vec3
+    // Schlick's, of the light that enters.
+    const entering = reflectance.oneMinus().mul(square.mul(square).mul(slant).oneMinus())
+    directDiffuse.addAssign(irradiance.mul(albedo().mul(entering)).div(Math.PI))
+    const highlight = BRDF_GGX({ lightDirection: direction, f0: reflectance, f90: 1, roughness })
+    directSpecular.addAssign(irradiance.mul(highlight as unknown as Vec3))
+  }
+
+  override indirect(builder: NodeBuilder): void {
+    if (this.#mirrors) {
+      super.indirect(builder)
+      return
+    }
+    const { irradiance, reflectedLight } = builder.context as LightingContext
+    const entering = (specularColor as unknown as Vec3).oneMinus()
+    reflectedLight.indirectDiffuse.addAssign(irradiance.mul(albedo().mul(entering)).div(Math.PI))
+    this.ambientOcclusion(builder)
   }
 
   override ambientOcclusion(builder: NodeBuilder): void {
     const { ambientOcclusion, reflectedLight } = builder.context as LightingContext
-    const albedo = (diffuseColor as unknown as { rgb: Vec3 }).rgb
-    const factor = bouncedLight(albedo, ambientOcclusion).toConst('bounced') as unknown as Vec3
+    const factor = bouncedLight(albedo(), ambientOcclusion).toConst('bounced') as unknown as Vec3
     const { indirectDiffuse } = reflectedLight
-    const sun = albedo.mul(this.#sunlight!).mul(factor.sub(1)).div(Math.PI)
+    const sun = albedo().mul(this.#sunlight!).mul(factor.sub(1)).div(Math.PI)
     indirectDiffuse.assign(indirectDiffuse.mul(factor).add(sun))
-    super.ambientOcclusion(builder)
+    if (this.#mirrors) super.ambientOcclusion(builder)
+    else indirectDiffuse.assign(indirectDiffuse.mul(ambientOcclusion))
   }
 }
 

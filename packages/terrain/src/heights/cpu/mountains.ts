@@ -61,9 +61,13 @@ export const SHORT_CHAINS: Belts = {
  */
 export const RIDGES = { count: 15, inverse: 2 ** -16, seed: 71, valleys: 2, moved: 7 }
 
-/** Amplitude of an octave is 1 / (LONG[0] LONG[1]^n + SHORT[0] SHORT[1]^n): most at 16 to 33 km. */
+/**
+ * Amplitude of an octave is 1 / Σ a b^n over these: most at 16 to 33 km, and from 250 m on less and less, as where soil creeps and fills
+ * hollows. Less of the last: meadows are hummocks of 4 m to 30 m (*Terrain*, Meadow).
+ */
 export const LONG = [3, 0.39] as const
 export const SHORT = [0.305, 1 / 0.47] as const
+export const SOFT = [0.006, 1 / 0.3] as const
 
 /** Roundness of crests and of valleys' floors, in units of the noise. */
 export const ROUNDNESS = 0.05
@@ -74,8 +78,10 @@ export const STEEPNESS = 1.5
 /** Mean of an octave of crests; of one of valleys, what that lacks of 1. */
 export const MEAN_RIDGE = 0.45
 
-/** Roughness of an octave per height of the one before: ridges are rough, valleys smooth. */
+/** Roughness of an octave per height of the one before: ridges are rough, valleys smooth. From octave `CRAGS` on only crests are. */
 export const ROUGHENING = 1.9
+export const CRAGS = 8
+export const CRAG_ROUGHENING = 1.2
 
 /** Height of land per unit of the continents [m], and at their 0. */
 export const LAND_HEIGHT = 2400
@@ -89,15 +95,18 @@ export const PLAINS = 0.03
 export const HILLS = 0.1
 export const BELT_RIDGES = 0.95
 
+/** Part of the ridges of belts that grows as their height does, and not by its square. 1: coasts at their feet are broken into islands. */
+export const FOOTHILLS = 0.35
+
 /** Sum of continents over which hills rise. */
-export const HILLS_START = -0.3
+export const HILLS_START = 0
 export const HILLS_END = 0.4
 
 const noise: Noise = { x: 0, y: 0, z: 0, value: 0 }
 
 /** Amplitude of an octave of ridges [–]. */
 export const ridgeAmplitude = (octave: number): number =>
-  1 / (LONG[0] * LONG[1] ** octave + SHORT[0] * SHORT[1] ** octave)
+  1 / [LONG, SHORT, SOFT].reduce((sum, [first, ratio]) => sum + first * ratio ** octave, 0)
 
 /** Smooth step from 0 to 1, and its slope. */
 function smooth(start: number, end: number, value: number): [number, number] {
@@ -167,8 +176,9 @@ function ridgedSum(x: number, y: number, z: number, seed: number, target: Sum): 
     target.x += amplitude * (weight * sx + over * turn.x)
     target.y += amplitude * (weight * sy + over * turn.y)
     target.z += amplitude * (weight * sz + over * turn.z)
-    const next = Math.min(ROUGHENING * ridge * weight, 1)
-    const slope = 2 * (1 - next) * ROUGHENING
+    const roughening = i < CRAGS ? ROUGHENING : CRAG_ROUGHENING
+    const next = Math.min(roughening * ridge * weight, 1)
+    const slope = 2 * (1 - next) * roughening
     turn.x = slope * (sx * weight + ridge * turn.x)
     turn.y = slope * (sy * weight + ridge * turn.y)
     turn.z = slope * (sz * weight + ridge * turn.z)
@@ -225,12 +235,14 @@ export function mountains(
   ridgedSum(x, y, z, seed, ridges)
   const lift = 1 - (1 - belt.value) * (1 - short.value)
   const [hills, edge] = smooth(HILLS_START, HILLS_END, land.value)
-  const mask = PLAINS + HILLS * hills + BELT_RIDGES * lift
+  const rugged = lift * (FOOTHILLS + (1 - FOOTHILLS) * lift)
+  const ruggedPerLift = FOOTHILLS + 2 * (1 - FOOTHILLS) * lift
+  const mask = PLAINS + HILLS * hills + BELT_RIDGES * rugged
   target.value =
     LAND_OFFSET + LAND_HEIGHT * land.value + relief * (UPLIFT * lift + mask * ridges.value)
   for (const axis of ['x', 'y', 'z'] as const) {
     const rise = belt[axis] * (1 - short.value) + short[axis] * (1 - belt.value)
-    const turn = HILLS * edge * land[axis] + BELT_RIDGES * rise
+    const turn = HILLS * edge * land[axis] + BELT_RIDGES * ruggedPerLift * rise
     target[axis] =
       LAND_HEIGHT * land[axis] +
       relief * (UPLIFT * rise + mask * ridges[axis] + turn * ridges.value)

@@ -6,6 +6,9 @@ import {
   BELT_RIDGES,
   CHAINS,
   CONTINENTS,
+  CRAGS,
+  CRAG_ROUGHENING,
+  FOOTHILLS,
   HILLS,
   HILLS_END,
   HILLS_START,
@@ -21,6 +24,7 @@ import {
   ROUNDNESS,
   SHORT,
   SHORT_CHAINS,
+  SOFT,
   STEEPNESS,
   UPLIFT,
   type Belts,
@@ -78,8 +82,9 @@ const ridgedSum = /*#__PURE__*/ Fn(
     const inverse = float(RIDGES.inverse).toVar('inverse')
     const long = float(LONG[0]).toVar('longPart')
     const short = float(SHORT[0]).toVar('shortPart')
+    const soft = float(SOFT[0]).toVar('softPart')
     loop('octave', RIDGES.count, octave => {
-      const kept = keptShare(inverse, shortest).div(long.add(short)).toConst('kept')
+      const kept = keptShare(inverse, shortest).div(long.add(short).add(soft)).toConst('kept')
       If(kept.lessThanEqual(0), () => {
         Break()
       })
@@ -106,12 +111,17 @@ const ridgedSum = /*#__PURE__*/ Fn(
       const over = ridge.sub(isValley.mul(1 - 2 * MEAN_RIDGE).add(MEAN_RIDGE)).toConst('over')
       const gradient = slope.add(weight.xyz.mul(over))
       sum.addAssign(vec4(gradient, over.mul(weight.w)).mul(kept))
-      const next = ridge.mul(weight.w).mul(ROUGHENING).min(1).toConst('next')
-      const turn = slope.add(weight.xyz.mul(ridge)).mul(next.oneMinus().mul(2 * ROUGHENING))
+      const roughening = float(octave)
+        .lessThan(CRAGS - 0.5)
+        .select(ROUGHENING, CRAG_ROUGHENING)
+        .toConst('roughening') as unknown as Float
+      const next = ridge.mul(weight.w).mul(roughening).min(1).toConst('next')
+      const turn = slope.add(weight.xyz.mul(ridge)).mul(next.oneMinus().mul(roughening).mul(2))
       weight.assign(vec4(turn, next.mul(float(2).sub(next))))
       inverse.mulAssign(2)
       long.mulAssign(LONG[1])
       short.mulAssign(SHORT[1])
+      soft.mulAssign(SOFT[1])
     })
     return sum
   },
@@ -181,12 +191,14 @@ export const mountains = (
     .clamp(0, 1)
     .toConst('t')
   const edge = t.mul(t.oneMinus()).mul((6 * HILLS) / (HILLS_END - HILLS_START))
+  const rise = lifted.w.mul(1 - FOOTHILLS).toConst()
   const mask = smoothstep(0, 1, t)
     .mul(HILLS)
     .add(PLAINS)
-    .add(lifted.w.mul(BELT_RIDGES))
+    .add(lifted.w.mul(rise.add(FOOTHILLS)).mul(BELT_RIDGES))
     .toConst('mask')
-  const turn = land.xyz.mul(edge).add(lifted.xyz.mul(BELT_RIDGES)).mul(ridges.w)
+  const rugged = lifted.xyz.mul(rise.mul(2).add(FOOTHILLS).mul(BELT_RIDGES))
+  const turn = land.xyz.mul(edge).add(rugged).mul(ridges.w)
   const mountain = vec4(ridges.xyz.mul(mask).add(turn), ridges.w.mul(mask))
   return land
     .mul(LAND_HEIGHT)

@@ -85,37 +85,42 @@ export function grainAt(place: GrainPlace): Grain {
     const coarseSlope = vec3(0).toVar('coarseSlope') as unknown as Slope
     const crowns = vec4(0).toVar('crowns') as unknown as Variable
     const crownSlope = vec3(0).toVar('crownSlope') as unknown as Slope
-    const logSize = size.max(1e-6).log2().toConst() as Float
-    const frame = { ...frameNear(normal, place.up, first), logSize }
-    const inSpace = ({ x, y }: Vec4): Vec3 =>
-      frame.tangent.mul(x).add(frame.bitangent.mul(y)).mul(GRAIN_SLOPE)
-    If(canopy.greaterThan(0), () => {
-      const { nearest, next, shares } = tilingVertices(place.reference, offset, CANOPY_CELLS)
-      const add = ({ away, random }: TilingVertex, share: Float): void => {
-        crowns.addAssign(pieceOf(grain, frame, CANOPY.side, away, random.xy).mul(share.mul(canopy)))
-      }
-      add(nearest(), shares.x)
-      If(shares.y.greaterThan(0), () => {
-        add(next(), shares.y)
-      })
-      crownSlope.assign(inSpace(crowns))
-    })
-    If(far.greaterThan(0), () => {
-      const { nearest, next, shares } = tilingVertices(place.reference, offset, CELLS)
-      const add = ({ away, random }: TilingVertex, share: Float): void => {
-        const boulders = pieceOf(grain, frame, COARSE.side, away, random.xy)
-        coarse.addAssign(boulders.mul(share.mul(far)))
-        If(near.greaterThan(0), () => {
-          const stones = pieceOf(grain, frame, FINE.side, away, random.zx)
-          fine.addAssign(stones.mul(share.mul(near)))
+    // Seen from afar there are none of them.
+    If(footprint.lessThan(CANOPY.gone), () => {
+      const logSize = size.max(1e-6).log2().toConst() as Float
+      const frame = { ...frameNear(normal, place.up, first), logSize }
+      const inSpace = ({ x, y }: Vec4): Vec3 =>
+        frame.tangent.mul(x).add(frame.bitangent.mul(y)).mul(GRAIN_SLOPE)
+      If(canopy.greaterThan(0), () => {
+        const { nearest, next, shares } = tilingVertices(place.reference, offset, CANOPY_CELLS)
+        const add = ({ away, random }: TilingVertex, share: Float): void => {
+          crowns.addAssign(
+            pieceOf(grain, frame, CANOPY.side, away, random.xy).mul(share.mul(canopy))
+          )
+        }
+        add(nearest(), shares.x)
+        If(shares.y.greaterThan(0), () => {
+          add(next(), shares.y)
         })
-      }
-      add(nearest(), shares.x)
-      If(shares.y.greaterThan(0), () => {
-        add(next(), shares.y)
+        crownSlope.assign(inSpace(crowns))
       })
-      fineSlope.assign(inSpace(fine))
-      coarseSlope.assign(inSpace(coarse))
+      If(far.greaterThan(0), () => {
+        const { nearest, next, shares } = tilingVertices(place.reference, offset, CELLS)
+        const add = ({ away, random }: TilingVertex, share: Float): void => {
+          const boulders = pieceOf(grain, frame, COARSE.side, away, random.xy)
+          coarse.addAssign(boulders.mul(share.mul(far)))
+          If(near.greaterThan(0), () => {
+            const stones = pieceOf(grain, frame, FINE.side, away, random.zx)
+            fine.addAssign(stones.mul(share.mul(near)))
+          })
+        }
+        add(nearest(), shares.x)
+        If(shares.y.greaterThan(0), () => {
+          add(next(), shares.y)
+        })
+        fineSlope.assign(inSpace(fine))
+        coarseSlope.assign(inSpace(coarse))
+      })
     })
     return mat4(
       vec4(fineSlope, fine.z),

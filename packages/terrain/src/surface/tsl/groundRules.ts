@@ -8,7 +8,13 @@ const SPREAD = 0.12
 const MOST_SPREAD = 450
 
 /** Share of the climate in where woods grow: fewer of them where it is dry [–]. Less: land from orbit is of one colour (*Terrain*). */
-const DRY_WOODS = 0.9
+const DRY_WOODS = 1.4
+
+/** Part of the patches that is open where it is neither wet nor dry, over half of them [–]. */
+const OPEN = 0.15
+
+/** Moisture that land just above the sea lacks, and heights over it between which it does [m]: open plains below woods. */
+const LOWLAND = { dry: 0.4, from: 60, to: 420 }
 
 /** Deviation of patches, and size of a pixel that shows none of them: a share of it is woods then [m]. */
 const PATCH_DEVIATION = 0.35
@@ -68,6 +74,8 @@ export interface GroundClimate {
   /** Slope towards the equator. */
   readonly sunny: Float
   readonly dryness: Float
+  /** Share of a plain just above the sea. */
+  readonly lowland: Float
 }
 
 /** @param seaLevel - [m] */
@@ -95,14 +103,15 @@ export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimat
     .add(climate.mul(1.4))
     .clamp(0, 1)
     .toConst('dryness') as Float
-  return { overSea, overSnow, overTrees, sunny, dryness }
+  const lowland = smoothstep(LOWLAND.from, LOWLAND.to, overSea).oneMinus().toConst('lowland')
+  return { overSea, overSnow, overTrees, sunny, dryness, lowland }
 }
 
 /** Layers by height, slope, curvature, latitude and noise. */
 export function groundRules(
   place: GroundPlace,
   grain: Grain,
-  { overSea, overSnow, overTrees, dryness }: GroundClimate
+  { overSea, overSnow, overTrees, dryness, lowland }: GroundClimate
 ): GroundRules {
   const { patch, climate, cosSlope, hollow } = place
   const { stone, boulder, tuft, crown } = grain
@@ -117,7 +126,12 @@ export function groundRules(
     .toConst('steepness')
 
   const lost = grain.footprint.div(PATCHES_GONE).min(1).mul(PATCH_DEVIATION).toConst()
-  const moisture = patch.sub(dryness).sub(climate.mul(DRY_WOODS)).toConst()
+  const moisture = patch
+    .sub(dryness)
+    .sub(climate.mul(DRY_WOODS))
+    .sub(OPEN)
+    .sub(lowland.mul(LOWLAND.dry))
+    .toConst()
   const woods = smoothstep(
     lost.add(0.2).negate(),
     lost,

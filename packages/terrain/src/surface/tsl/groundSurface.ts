@@ -10,6 +10,9 @@ import {
   type GroundPlace
 } from './groundRules'
 
+/** Dry grass per climate: steppe is straw, wet country green. Less: land from orbit is of one colour (*Terrain*). */
+const DRY_GRASS = 1.5
+
 /** Mean square of the slopes of stones. */
 const GRAIN_VARIANCE = 0.3
 
@@ -20,11 +23,11 @@ const SCREE = [0.238, 0.228, 0.21]
 const SAND = [0.4, 0.32, 0.215]
 const SEAWEED = [0.03, 0.026, 0.013]
 const DESERT = [0.39, 0.265, 0.15]
-const GRASS = [0.064, 0.086, 0.03]
+const GRASS = [0.06, 0.09, 0.027]
 const SOIL = [0.052, 0.04, 0.027]
-const STRAW = [0.2, 0.172, 0.078]
-const HEATH = [0.062, 0.05, 0.031]
-const FOREST = [0.017, 0.028, 0.012]
+const STRAW = [0.235, 0.195, 0.092]
+const HEATH = [0.056, 0.058, 0.029]
+const FOREST = [0.019, 0.031, 0.013]
 const BROADLEAF = [0.033, 0.045, 0.015]
 const SHRUB = [0.026, 0.034, 0.015]
 const SNOW = [0.83, 0.86, 0.9]
@@ -69,7 +72,7 @@ export function groundSurface(
 ): GroundSurface {
   const { patch, climate } = place
   const ground = groundClimate(place, seaLevel)
-  const { overSea, overTrees, sunny } = ground
+  const { overSea, overTrees, sunny, lowland } = ground
   const grain = grainAt(place)
   const { stone, blade, boulder, tuft, crown, brush } = grain
   const rules = groundRules(place, grain, ground)
@@ -83,21 +86,26 @@ export function groundSurface(
   const rock = mix(color(DARK_ROCK), color(ROCK), tone.mul(1.1).add(0.55).clamp(0, 1)).mul(stony)
   // Drier and fresher spots of metres, dry blades and soil of centimetres: the brightest and the darkest of the picture.
   const spots = boulder.mul(0.8).add(tuft.mul(0.5)).add(brush.mul(0.9)).toConst('spots')
-  const straw = smoothstep(-0.45, 0.7, patch.mul(0.9).add(spots).add(sunny.mul(0.5)))
+  const parched = patch
     .mul(0.6)
-    .add(smoothstep(-900, 200, overTrees).mul(0.25))
-    .max(smoothstep(0.36, 0.6, blade).mul(0.9))
+    .add(spots)
+    .add(sunny.mul(0.5))
+    .add(climate.mul(DRY_GRASS).add(lowland.mul(0.55)))
+  const straw = smoothstep(-0.3, 0.8, parched)
+    .mul(0.75)
+    .add(smoothstep(-900, 200, overTrees).mul(0.2))
+    .max(smoothstep(0.36, 0.6, blade).mul(0.8))
   // Heather and dwarf shrubs lie in patches, more of them towards the tree line.
   const high = smoothstep(-900, 100, overTrees).toConst('high')
-  const heath = smoothstep(-0.1, 0.35, spots.sub(patch.mul(0.9)).add(high.mul(0.3)).sub(0.15))
-  const turf = mix(mix(color(GRASS), color(STRAW), straw), color(HEATH), heath.mul(0.8))
+  const heath = smoothstep(-0.1, 0.35, spots.sub(patch.mul(0.9)).add(high.mul(0.4)).sub(0.4))
+  const turf = mix(mix(color(GRASS), color(STRAW), straw), color(HEATH), heath.mul(0.65))
   const blades = turf.mul(light.add(brush.mul(0.35)).add(1).max(0.2))
-  const grassland = mix(blades, color(SOIL), smoothstep(0.1, 0.32, blade.negate()).mul(0.85))
+  const grassland = mix(blades, color(SOIL), smoothstep(0.14, 0.3, blade.negate()).mul(0.7))
   // Shrubs stand in it, more of them towards the woods.
-  const shrubs = smoothstep(0.22, 0.42, crown.add(patch.sub(dryness).mul(0.35)).sub(0.05)).toConst(
+  const shrubs = smoothstep(0.3, 0.5, crown.add(patch.sub(dryness).mul(0.35)).sub(0.05)).toConst(
     'shrubs'
   )
-  const meadow = mix(grassland, color(SHRUB), shrubs.mul(0.9))
+  const meadow = mix(grassland, color(SHRUB), shrubs.mul(0.75))
   const leaves = mix(
     color(FOREST),
     color(BROADLEAF),
@@ -140,7 +148,7 @@ export function groundSurface(
     .max(shrubs)
     .mul(bare.max(bareness).max(dryness).max(snow).oneMinus())
     .mul(inland)
-  const raised = mix(mix(bump.mul(0.55).max(0.13), float(0.7), leafy), float(0.06), snow).toConst(
+  const raised = mix(mix(bump.mul(0.55).max(0.06), float(0.7), leafy), float(0.06), snow).toConst(
     'raised'
   )
   const hollow = stone

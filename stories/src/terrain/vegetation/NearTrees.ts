@@ -1,0 +1,64 @@
+import {
+  DoubleSide,
+  InstancedBufferAttribute,
+  InstancedBufferGeometry,
+  Mesh,
+  type BufferGeometry,
+  type Vector3
+} from 'three'
+import { attribute, positionGeometry, transformNormalToView, varying } from 'three/tsl'
+import { setFoliage } from '../../valley/leaves'
+import type { PlantCells } from './PlantCells'
+import { PlantMaterial, plantNodes, type PlantUniforms, type Vec3 } from './plantShader'
+
+/** Most trees with branches. */
+const MOST = 600
+
+/** Trees with branches, which cast shadows: those of the cells that are near the viewer. */
+export class NearTrees extends Mesh<InstancedBufferGeometry, PlantMaterial> {
+  readonly #cells: PlantCells
+  readonly #reach: number
+  readonly #places = new InstancedBufferAttribute(new Float32Array(4 * MOST), 4)
+  readonly #looks = new InstancedBufferAttribute(new Float32Array(4 * MOST), 4)
+
+  /** @param reach - Distance within which trees have branches [m]. */
+  constructor(tree: BufferGeometry, cells: PlantCells, uniforms: PlantUniforms, reach: number) {
+    const geometry = new InstancedBufferGeometry()
+    for (const [name, values] of Object.entries(tree.attributes))
+      geometry.setAttribute(name, values)
+    geometry.setIndex(tree.index)
+    const material = new PlantMaterial({ side: DoubleSide })
+    setFoliage(material)
+    const { foot, size, tint, turned } = plantNodes(uniforms)
+    material.positionNode = foot.add(turned((positionGeometry as unknown as Vec3).mul(size)))
+    const normal = turned(attribute<'vec3'>('normal', 'vec3') as unknown as Vec3).normalize()
+    material.normalNode = varying(transformNormalToView(normal as never) as unknown as Vec3)
+    const color = attribute<'vec3'>('color', 'vec3').mul(tint)
+    material.colorNode = (material.colorNode as Vec3).mul(varying(color))
+    super(geometry, material)
+    geometry.setAttribute('plantPlace', this.#places)
+    geometry.setAttribute('plantLook', this.#looks)
+    this.#cells = cells
+    this.#reach = reach
+    this.castShadow = this.receiveShadow = true
+    this.frustumCulled = false
+  }
+
+  /** Chooses the trees about a viewer. */
+  choose({ x, y, z }: Vector3): void {
+    const [places, looks] = [this.#cells.places.array, this.#cells.looks.array]
+    let n = 0
+    for (let i = 0; i < places.length && n < 4 * MOST; i += 4) {
+      if (places[i + 3] === 0) continue
+      const away = Math.hypot(places[i] - x, places[i + 1] - y, places[i + 2] - z)
+      if (away > this.#reach) continue
+      for (let j = 0; j < 4; j++) {
+        this.#places.array[n + j] = places[i + j]
+        this.#looks.array[n + j] = looks[i + j]
+      }
+      n += 4
+    }
+    this.geometry.instanceCount = n / 4
+    this.#places.needsUpdate = this.#looks.needsUpdate = true
+  }
+}

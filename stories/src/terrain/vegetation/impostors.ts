@@ -1,0 +1,169 @@
+import {
+  DoubleSide,
+  HalfFloatType,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  Mesh,
+  OrthographicCamera,
+  PlaneGeometry,
+  RenderTarget,
+  Scene,
+  type BufferGeometry
+} from 'three'
+import {
+  attribute,
+  cos,
+  floor,
+  fract,
+  mix,
+  positionGeometry,
+  sin,
+  smoothstep,
+  texture,
+  transformNormalToView,
+  uv,
+  varying,
+  vec2,
+  vec3
+} from 'three/tsl'
+import { MeshBasicNodeMaterial, type Node, type WebGPURenderer } from 'three/webgpu'
+import { setFoliage } from '../../valley/leaves'
+import type { PlantCells } from './PlantCells'
+import {
+  plantGeometry,
+  PlantMaterial,
+  plantNodes,
+  type Float,
+  type PlantUniforms,
+  type Vec3
+} from './plantShader'
+
+/** Sides that a tree is drawn from, and texels of a picture of it. */
+const SIDES = 8
+const WIDTH = 96
+const HEIGHT = 192
+
+/** Width and height that a picture shows, the tree's foot in the middle of its lower edge [m]. */
+const FRAME = { width: 6.6, height: 11 }
+
+/** Coverage from which a picture is solid near and far: its means are thinner than leaves are. */
+const SOLID = [0.45, 0.22] as const
+const FAR = 600
+
+/** Pictures of a tree from all sides: colour with coverage, and normals. */
+export interface TreePictures {
+  readonly color: RenderTarget
+  readonly normal: RenderTarget
+}
+
+/** Draws a tree from all sides. */
+export function drawPictures(renderer: WebGPURenderer, geometry: BufferGeometry): TreePictures {
+  const scene = new Scene()
+  const { width, height } = FRAME
+  const camera = new OrthographicCamera(-width / 2, width / 2, height, 0, 0, 40)
+  const target = (): RenderTarget =>
+    new RenderTarget(SIDES * WIDTH, HEIGHT, {
+      type: HalfFloatType,
+      generateMipmaps: true,
+      minFilter: LinearMipmapLinearFilter,
+      magFilter: LinearFilter
+    })
+  const pictures = { color: target(), normal: target() }
+  const colors = new MeshBasicNodeMaterial({ vertexColors: true, side: DoubleSide })
+  setFoliage(colors)
+  const normals = new MeshBasicNodeMaterial({ side: DoubleSide })
+  setFoliage(normals)
+  normals.colorNode = attribute<'vec3'>('normal', 'vec3').normalize().mul(0.5).add(0.5)
+  const mesh = new Mesh(geometry)
+  mesh.frustumCulled = false
+  scene.add(mesh)
+  const before = renderer.getRenderTarget()
+  const { autoClear } = renderer
+  const alpha = renderer.getClearAlpha()
+  renderer.setClearAlpha(0)
+  for (const [into, material] of [
+    [pictures.color, colors],
+    [pictures.normal, normals]
+  ] as const) {
+    mesh.material = material
+    for (let side = 0; side < SIDES; side++) {
+      const angle = (2 * Math.PI * side) / SIDES
+      camera.position.set(20 * Math.sin(angle), 0, 20 * Math.cos(angle))
+      camera.lookAt(0, 0, 0)
+      camera.updateMatrixWorld()
+      into.viewport.set(side * WIDTH, 0, WIDTH, HEIGHT)
+      into.scissor.set(side * WIDTH, 0, WIDTH, HEIGHT)
+      into.scissorTest = true
+      renderer.setRenderTarget(into)
+      renderer.autoClear = side === 0
+      renderer.render(scene, camera)
+    }
+  }
+  renderer.autoClear = autoClear
+  renderer.setClearAlpha(alpha)
+  renderer.setRenderTarget(before)
+  colors.dispose()
+  normals.dispose()
+  return pictures
+}
+
+/**
+ * Trees as pictures that turn to the viewer, lit by the normals in them.
+ *
+ * @param from - Distance from which trees are drawn so [m], and distances between which they go.
+ */
+export function createImpostors(
+  pictures: TreePictures,
+  cells: PlantCells,
+  uniforms: PlantUniforms,
+  from: number,
+  goes: readonly [number, number]
+): Mesh {
+  const material = new PlantMaterial({ side: DoubleSide })
+  const { foot, size, random, tint, distance } = plantNodes(uniforms)
+  const yaw = attribute<'vec4'>('plantLook', 'vec4').x as unknown as Float
+  const to = uniforms.viewer.sub(foot).toConst() as unknown as Vec3
+  const level = to.xz.length().max(1e-3).toConst() as unknown as Float
+  // Azimuth of the viewer about the tree, in its own frame.
+  const azimuth = to.x.atan(to.z).sub(yaw).toConst() as unknown as Float
+  const right = vec3(to.z.div(level), 0, to.x.div(level).negate())
+  const shown = distance
+    .greaterThan(from)
+    .select(smoothstep(goes[0], goes[1], distance.mul(random.mul(0.2).add(0.9))).oneMinus(), 0)
+  const { x, y } = positionGeometry
+  const scaled = size.mul(shown)
+  material.positionNode = foot
+    .add(right.mul(x.mul(FRAME.width)).mul(scaled))
+    .add(vec3(0, y.mul(FRAME.height), 0).mul(scaled))
+  const side = varying(
+    floor(
+      fract(azimuth.div(2 * Math.PI))
+        .mul(SIDES)
+        .add(0.5)
+    )
+      .mod(SIDES)
+      .div(SIDES)
+  ).setInterpolation('flat' as never)
+  const at = vec2(uv().x.div(SIDES).add(side), uv().y.oneMinus()).toConst()
+  const color = texture(pictures.color.texture, at).toConst() as unknown as Node<'vec4'>
+  const normal = texture(pictures.normal.texture, at).toConst() as unknown as Node<'vec4'>
+  const solid = mix(SOLID[0], SOLID[1], smoothstep(80, FAR, varying(distance)))
+  material.maskNode = color.a.greaterThan(solid)
+  material.colorNode = color.rgb.div(color.a.max(0.05)).mul(varying(tint))
+  const turn = varying(yaw)
+  const n = normal.xyz.div(normal.a.max(0.05)).mul(2).sub(1)
+  const turned = vec3(
+    n.x.mul(cos(turn)).add(n.z.mul(sin(turn))),
+    n.y,
+    n.z.mul(cos(turn)).sub(n.x.mul(sin(turn)))
+  )
+  material.normalNode = transformNormalToView(
+    turned.normalize() as never
+  ) as unknown as Node<'vec3'>
+  const mesh = new Mesh(
+    plantGeometry(new PlaneGeometry(1, 1).translate(0, 0.5, 0), cells),
+    material
+  )
+  mesh.frustumCulled = false
+  return mesh
+}

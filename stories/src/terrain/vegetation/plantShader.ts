@@ -1,0 +1,71 @@
+import { InstancedBufferGeometry, type BufferGeometry } from 'three'
+import { airAtVertices } from '@welkin/atmosphere'
+import { attribute, cos, sin, uniform, vec3 } from 'three/tsl'
+import { MeshLambertNodeMaterial, type Node } from 'three/webgpu'
+import { Vector3 } from 'three'
+import type { PlantCells } from './PlantCells'
+
+export type Float = Node<'float'>
+export type Vec3 = Node<'vec3'>
+
+/** Place of the viewer in the frame of plants [m], and time that wind moves them by [s]. */
+export const plantUniforms = () => ({ viewer: uniform(new Vector3()), time: uniform(0) })
+export type PlantUniforms = ReturnType<typeof plantUniforms>
+
+/** Place and look of a plant in a shader. */
+export interface PlantNodes {
+  /** Foot of it [m], and factor on its geometry. */
+  readonly foot: Vec3
+  readonly size: Float
+  /** Two random numbers in [0, 1), and its tint. */
+  readonly random: Float
+  readonly other: Float
+  readonly tint: Float
+  /** Distance from the viewer [m]. */
+  readonly distance: Float
+  /** Turns a vector with it about the vertical. */
+  readonly turned: (vector: Vec3) => Vec3
+}
+
+/** Nodes of the plant that a vertex belongs to. */
+export function plantNodes({ viewer }: PlantUniforms): PlantNodes {
+  const place = attribute<'vec4'>('plantPlace', 'vec4')
+  const look = attribute<'vec4'>('plantLook', 'vec4')
+  const [cosine, sine] = [cos(look.x).toConst(), sin(look.x).toConst()]
+  return {
+    foot: place.xyz as unknown as Vec3,
+    size: place.w as unknown as Float,
+    random: look.y as unknown as Float,
+    other: look.z as unknown as Float,
+    tint: look.w as unknown as Float,
+    distance: place.xyz.sub(viewer).length().toConst() as unknown as Float,
+    turned: v =>
+      vec3(
+        v.x.mul(cosine).add(v.z.mul(sine)),
+        v.y,
+        v.z.mul(cosine).sub(v.x.mul(sine))
+      ) as unknown as Vec3
+  }
+}
+
+/** Geometry of one plant for all in cells: one draw call. */
+export function plantGeometry(
+  geometry: BufferGeometry,
+  cells: PlantCells
+): InstancedBufferGeometry {
+  const all = new InstancedBufferGeometry()
+  for (const [name, values] of Object.entries(geometry.attributes)) all.setAttribute(name, values)
+  all.setIndex(geometry.index)
+  all.setAttribute('plantPlace', cells.places)
+  all.setAttribute('plantLook', cells.looks)
+  all.instanceCount = cells.places.count
+  return all
+}
+
+/** A matte material whose haze is found at vertices, as that of the terrain is. */
+export class PlantMaterial extends MeshLambertNodeMaterial {
+  static override get type(): string {
+    return 'PlantMaterial'
+  }
+  readonly airAtVertices = airAtVertices
+}
