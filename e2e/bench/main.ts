@@ -114,6 +114,16 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
     }
     return { clouds, cloudNoise, cloudMemory }
   },
+  async showers() {
+    const showers = await timeClouds(
+      device,
+      size,
+      Math.min(frames, 20),
+      cost => log(cloudLine(cost)),
+      'shower'
+    )
+    return { showers }
+  },
   async shaders() {
     log('\nshaders, vertex + fragment')
     return { shaders: await measureShaders(device, log) }
@@ -129,7 +139,9 @@ for (const name of only) {
 }
 log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
 const result: Record<string, unknown> = { device: device.name }
-for (const name of only.length > 0 ? only : Object.keys(parts)) {
+// All of `clouds` has the showers, too.
+const all = Object.keys(parts).filter(name => name !== 'showers')
+for (const name of only.length > 0 ? only : all) {
   Object.assign(result, await parts[name]())
 }
 if (values.json) console.log(JSON.stringify(result, null, 2))

@@ -23,8 +23,7 @@ import { distanceAt, type FallStretch } from './fallStretch'
 /** Steps of a ray over the quality's `layerSteps`. Fewer: grain in far shafts (*Rain and snow*). */
 const STEPS = 0.4
 
-/** Shortest mean length of steps [m], and fewest steps: rays to the ground nearby and up to the clouds are short. */
-const SHORTEST = 1200
+/** Fewest steps: rays to the ground nearby and up to the clouds are short. */
 const LEAST = 3
 
 /** Share of a step's length up to which the weather is blurred [–]. Smaller: grain far away. */
@@ -61,6 +60,8 @@ export interface FallSpace {
   readonly ceiling: Float
   /** Way of level light through what falls [m]. */
   readonly width: Float
+  /** Shortest mean length of steps [m]. */
+  readonly shortest: Float
 }
 
 /**
@@ -71,7 +72,7 @@ export interface FallSpace {
  */
 export function marchPrecipitation(
   context: ShadingContext,
-  { fallOf, layers, ceiling, width }: FallSpace,
+  { fallOf, layers, ceiling, width, shortest }: FallSpace,
   { direction, jitter }: Omit<CloudRay, 'end'>,
   stretch: FallStretch,
   points: SeenPoints
@@ -80,7 +81,7 @@ export function marchPrecipitation(
   const { view } = field
   const { span } = stretch
   const count = span
-    .div(SHORTEST)
+    .div(shortest)
     .clamp(LEAST, quality.layerSteps.mul(STEPS))
     .ceil()
     .toConst() as Float
