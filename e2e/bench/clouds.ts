@@ -165,18 +165,24 @@ async function timeCase(
   return costs
 }
 
-/** Cost of clouds in every case, and how near each comes to the reference; `tell` gets each at once. */
+/**
+ * Cost of clouds in every case, and how near each comes to the reference; `tell` gets each at once.
+ *
+ * @param prefix - Beginning of the names of the cases that are timed.
+ */
 export async function timeClouds(
   device: HeadlessDevice,
   size: readonly [number, number],
   frames: number,
-  tell: (cost: CloudCost) => void
+  tell: (cost: CloudCost) => void,
+  prefix = ''
 ): Promise<CloudCost[]> {
   const renderer = await device.renderer(...size)
   const costs: CloudCost[] = []
-  for (const layers of new Set(cloudCases.map(timed => timed.layers))) {
+  const cases = cloudCases.filter(({ name }) => name.startsWith(prefix))
+  for (const layers of new Set(cases.map(timed => timed.layers))) {
     const bench = new CloudBench(renderer, size, layers?.())
-    for (const timed of cloudCases.filter(other => other.layers === layers)) {
+    for (const timed of cases.filter(other => other.layers === layers)) {
       const timings = await timeCase(bench, timed, frames)
       timings.forEach(tell)
       costs.push(...timings)

@@ -122,6 +122,16 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
     }
     return { clouds, cloudNoise, cloudMemory }
   },
+  async showers() {
+    const showers = await timeClouds(
+      device,
+      size,
+      Math.min(frames, 20),
+      cost => log(cloudLine(cost)),
+      'shower'
+    )
+    return { showers }
+  },
   async shaders() {
     log('\nshaders, vertex + fragment')
     return { shaders: await measureShaders(device, log) }
@@ -137,8 +147,8 @@ for (const name of only) {
 }
 log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
 const result: Record<string, unknown> = { device: device.name }
-// Cracks are no figure of cost, and take minutes: only when asked for.
-const all = Object.keys(parts).filter(name => name !== 'cracks')
+// All of `clouds` has the showers, too; cracks are no figure of cost, and take minutes: only when asked for.
+const all = Object.keys(parts).filter(name => name !== 'showers' && name !== 'cracks')
 for (const name of only.length > 0 ? only : all) {
   Object.assign(result, await parts[name]())
 }

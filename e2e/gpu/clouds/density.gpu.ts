@@ -267,11 +267,12 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
-gpuTest('gives numbers for any parameters', async t => {
+gpuTest('gives numbers for any parameters, of clouds and of what falls from them', async t => {
   const draw = random(11)
   const pick = (...values: number[]): number => values[Math.floor(draw() * values.length)]
   const layers = new CloudLayers([{}, {}, {}, {}])
   const scene = await cloudScene(t, layers, { longitude: -75, latitude: -60, height: 3000 })
+  const medium = precipitationShafts()
   const inputs = [
     ...offsets(scene.viewpoint, 400, 50_000, 5),
     ...offsets(scene.viewpoint, 100, 3_000_000, 6),
@@ -301,10 +302,18 @@ gpuTest('gives numbers for any parameters', async t => {
         openCells: pick(0, 0.5, 1),
         densityGrowth: pick(0, 1, 4),
         weatherWeights: [pick(0, 1), pick(0, 1e-9), pick(0, 1), pick(0, 1)],
-        wind: { east: pick(0, 1e6), north: pick(0, -1e9) }
+        wind: { east: pick(0, 1e6), north: pick(0, -1e9) },
+        precipitation: {
+          rate: pick(0, 1e-3, 300),
+          share: pick(1e-9, 0.5, 1),
+          virgaDepth: pick(0, 1e-3, 20_000),
+          freezingLevel: pick(-1000, 600, 30_000),
+          hail: pick(0, 1),
+          streaks: pick(0, 1, 3)
+        }
       })
     }
-    scene.update(pick(0, 1, 1e12))
+    medium.update(scene.field, scene.update(pick(0, 1, 1e12)))
     const results = await evaluateOnGpu(scene.renderer, inputs, input => {
       const offset = input.xyz.toConst() as unknown as Node<'vec3'>
       const { altitude, up } = scene.field.view.localCoordinates(offset)
@@ -313,7 +322,7 @@ gpuTest('gives numbers for any parameters', async t => {
         cloudExtinction(scene.field, sample, true),
         cloudExtinction(scene.field, sample, false),
         verticalOpticalDepth(scene.field, sample),
-        1
+        medium.extinctionAt(scene.field, layerAt(scene.field, int(0)), sample)
       )
     })
     expectFinite(results, `round ${round}`)

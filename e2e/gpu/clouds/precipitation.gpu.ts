@@ -96,7 +96,8 @@ function rainInTheEast(
     fallOf: index => medium.fallOf(index),
     layers: { first: int(0), last: int(1) },
     ceiling: medium.ceiling,
-    width: float(1500)
+    width: float(1500),
+    shortest: float(1200)
   }
   return async (rays, { sun, edge: from, reach: end, isShaded }) => {
     edge.value = from

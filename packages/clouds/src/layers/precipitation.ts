@@ -19,6 +19,11 @@ export interface CloudPrecipitation {
   readonly freezingLevel?: number
   /** Share of the rate that falls as hail where it is heaviest, in [0, 1]; default 0. */
   readonly hail?: number
+  /**
+   * Factor of the contrast of streaks, in [0, 3]; default 1. 0 makes even curtains, 2 single trails under single cloudlets, as of
+   * virga. The mean rate stays.
+   */
+  readonly streaks?: number
 }
 
 /** Defaults of {@link CloudPrecipitation}. */
@@ -27,7 +32,8 @@ export const dry: Required<CloudPrecipitation> = {
   share: 0.5,
   virgaDepth: 0,
   freezingLevel: 2300,
-  hail: 0
+  hail: 0,
+  streaks: 1
 }
 
 const ranges = {
@@ -35,7 +41,8 @@ const ranges = {
   share: [Number.MIN_VALUE, 1],
   virgaDepth: [0, 20_000],
   freezingLevel: [-1000, 30_000],
-  hail: [0, 1]
+  hail: [0, 1],
+  streaks: [0, 3]
 } as const
 
 /** Precipitation with all its parameters, frozen. @throws If one is unknown or out of its range. */

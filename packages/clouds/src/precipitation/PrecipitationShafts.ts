@@ -19,7 +19,7 @@ import type { DeckFallNodes } from '../environment/tsl/decks'
 import { vec4Array, type Float, type Int, type Variable, type Vec3, type Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import { fallColumnOf } from './cpu/fallColumn'
-import { DIFFRACTED, fallFloor, fallForm } from './fallForm'
+import { DIFFRACTED, fallFloor, fallForm, STREAK_WIDTH } from './fallForm'
 import { fallenFrom, fallExtinction } from './tsl/fall'
 import type { FallNodes } from './tsl/fallColumn'
 import { distanceAt, fallStretch, partAt, type FallStretch } from './tsl/fallStretch'
@@ -39,6 +39,10 @@ const STRIDE = 4
 
 /** Way of level light through what falls from a deck [m]. */
 const DECK_WIDTH = 1500
+
+/** Shortest mean length of steps of the march over the width of streaks [–], and at most [m]. Longer: virga has grain (*Virga*). */
+const STEP = 1.2
+const LONGEST_STEP = 1200
 
 /** Altitude below all that is drawn, where nothing falls [m]. */
 const NOWHERE = -1000
@@ -73,6 +77,7 @@ export class PrecipitationShafts {
   readonly #ceiling = number(NOWHERE)
   readonly #floor = number(NOWHERE)
   readonly #width = number()
+  readonly #shortest = number(LONGEST_STEP)
   readonly #firstLayer = number()
   readonly #endLayer = number()
   readonly #above = {
@@ -105,7 +110,7 @@ export class PrecipitationShafts {
     for (const [i, { parameters }] of [...layers].entries()) {
       const { baseAltitude, topAltitude, coverage, density, wind, shear } = parameters
       const all = { ...dry, ...parameters.precipitation }
-      const { rate, share, virgaDepth, freezingLevel, hail } = all
+      const { rate, share, virgaDepth, freezingLevel, hail, streaks } = all
       const thickness = topAltitude - baseAltitude
       const layerCeiling = baseAltitude + thickness * fallForm.onset
       const growth =
@@ -117,7 +122,7 @@ export class PrecipitationShafts {
       const { x, y, z } = _axis
       second.set(x, y, z, 0).multiplyScalar(growth / 2).w = hail
       third.set(x, y, z, 0).multiplyScalar(shear).w = layerCeiling
-      fourth.fromArray([...(fallColumnOf(parameters)?.parts ?? [0, 0, 0]), 0])
+      fourth.fromArray([...(fallColumnOf(parameters)?.parts ?? [0, 0, 0]), streaks])
       state.push(...Object.values(all))
       if (rate === 0 || coverage === 0) continue
       ceiling = Math.max(ceiling, layerCeiling)
@@ -131,7 +136,9 @@ export class PrecipitationShafts {
       depth.value = density * thickness * column.insideDensity * depthScale.value
       layered.value = MathUtils.smoothstep(coverage, ...GROWING_TOGETHER)
       base.value = baseAltitude
-      period.value = layerPeriods(parameters).weather
+      const { weather, shape } = layerPeriods(parameters)
+      period.value = weather
+      this.#shortest.value = Math.min(STEP * STREAK_WIDTH * shape, LONGEST_STEP)
       this.#width.value = MathUtils.lerp(period.value * CLOUD_RADIUS, DECK_WIDTH, layered.value)
     }
     this.#ceiling.value = ceiling
@@ -183,7 +190,7 @@ export class PrecipitationShafts {
   /** Precipitation of a layer, as shader nodes. */
   fallOf(index: Int): FallNodes {
     const start = index.mul(int(STRIDE)).toConst()
-    const [first, second, third] = [0, 1, 2].map(
+    const [first, second, third, fourth] = [0, 1, 2, 3].map(
       slot => this.#array.element(start.add(int(slot))).toConst() as Vec4
     )
     return {
@@ -194,7 +201,8 @@ export class PrecipitationShafts {
       windAxis: second.xyz,
       hail: second.w,
       shearAxis: third.xyz,
-      ceiling: third.w
+      ceiling: third.w,
+      streaks: fourth.w
     }
   }
 
@@ -257,7 +265,8 @@ export class PrecipitationShafts {
         last: this.#endLayer.toInt().toConst()
       },
       ceiling: this.#ceiling,
-      width: this.#width
+      width: this.#width,
+      shortest: this.#shortest
     }
     // Clouds first: what would have to be kept through their shading makes it slower.
     const radiance = shadePoints(context, direction, points).toVar() as Variable<Vec4>

@@ -12,6 +12,12 @@ export const fallForm = {
   core: 2,
   /** Share of the layer's thickness over which rates set in above the base. 0: a gap below clouds (*Rain and snow*). */
   onset: 0.06,
+  /**
+   * Width over which what falls is mixed on its way down through the cloud, over the layer's thickness [–], and at most [m]. Smaller:
+   * curtains with hard sides (*Rain and snow*, snow shower).
+   */
+  mixing: 0.15,
+  mostMixing: 400,
   /** Depth below the freezing level in which snow melts [m]. */
   melting: 300,
   /**
@@ -22,15 +28,20 @@ export const fallForm = {
   /** Ranks between which hail sets in where a layer has any [–]. */
   hailFrom: [0.5, 0.9],
   /**
-   * Streaks: changes of the rate by coarse and fine billows above, per deviation of their noise [–]. 0: smooth curtains;
+   * Streaks: changes of the rate's logarithm by coarse and fine billows above, per deviation of their noise [–]. 0: smooth curtains;
    * greater: combs (*Rain and snow*).
    */
-  coarseStreaks: 0.4,
-  fineStreaks: 0.45,
+  coarseStreaks: 0.45,
+  fineStreaks: 0.4,
+  /** Height in the layer of the billows that make them, in [0, 1]: about where cloudlets are widest (*Virga*). */
+  streakHeight: 0.3,
   /** Blur of streaks over the way by which they lag, and over the depth of fall [–]: drops differ in speed. 0: lines to the ground. */
-  lagBlur: 0.12,
+  lagBlur: 0.08,
   fallBlur: 0.03
 } as const
+
+/** Width of coarse streaks over the period of a layer's shape [–]. */
+export const STREAK_WIDTH = 0.25
 
 /** Share of extinguished light that is diffracted, by a tenth of a degree: it counts as not scattered (Bohren & Huffman 1983, §4.4.3). */
 export const DIFFRACTED = 0.5
@@ -47,8 +58,8 @@ export const extinctionForm = {
   hail: 0.0081
 } as const
 
-/** Rate of the strongest streaks over that of their column [–]: what little is stronger is cut off where these have evaporated. */
-const STRONGEST = 3
+/** Rate of the strongest streaks over that of their column [–]. */
+export const STRONGEST = 4
 
 /**
  * Altitude below which nothing falls from a layer, since even the strongest streaks have evaporated [m]; −∞ where nothing evaporates.

@@ -5,9 +5,9 @@ import { float, vec4 } from 'three/tsl'
 import { describe, expect, it, test } from 'vitest'
 import { CloudLayer, cloudPreset, clouds, precipitationShafts } from '../../src'
 import { fallColumn, fallDepthOver } from '../../src/precipitation/cpu/fallColumn'
-import { DIFFRACTED, fallFloor, fallForm } from '../../src/precipitation/fallForm'
+import { DIFFRACTED, fallFloor, fallForm, STRONGEST } from '../../src/precipitation/fallForm'
 import { CloudCover, CloudLayers } from '../../src'
-import { extinctionOf, lagOf, rateOf } from '../twins/precipitation'
+import { extinctionOf, lagOf, rateOf, streakOf } from '../twins/precipitation'
 
 const rates = fc.double({ min: 0.1, max: 100, noNaN: true })
 
@@ -71,6 +71,24 @@ describe('precipitation', () => {
     expect(mean).toBeCloseTo(12, 3)
   })
 
+  it('has the same rate with streaks of any contrast, sharp or blurred, but for what is cut off', () => {
+    for (const amount of [0, 0.5, 1, 2])
+      for (const lost of [0, 0.4, 1]) {
+        // Billows have a normal distribution, near enough.
+        let [mean, weights] = [0, 0]
+        for (let z = -5; z <= 5; z += 0.01) {
+          const weight = Math.exp(-z * z / 2)
+          mean += weight * streakOf(z, amount, lost)
+          weights += weight
+        }
+        expect(mean / weights).toBeLessThanOrEqual(1.0001)
+        expect(mean / weights).toBeGreaterThan(amount > 1 ? 0.85 : 0.99)
+      }
+    expect(streakOf(1, 2, 0) / streakOf(-1, 2, 0)).toBeGreaterThan(8)
+    expect(streakOf(3, 0, 0)).toBe(1)
+    expect(streakOf(9, 3, 0)).toBe(STRONGEST)
+  })
+
   it('falls in a parabola, the flatter the slower', () => {
     const { groundWind, rainSpeed, snowSpeed } = fallForm
     const whole = (10 * (1 - groundWind) * 1000) / 2
@@ -79,13 +97,13 @@ describe('precipitation', () => {
     expect(lagOf(10, 500, 1000, 3000)).toBeCloseTo(whole / 4 / rainSpeed, 3)
   })
 
-  it('leaves nothing below its floor, of streaks three times as strong as the strongest column', () => {
+  it('leaves nothing below its floor, of streaks four times as strong as the strongest column', () => {
     expect(fallFloor(2000, 0)).toBe(-Infinity)
     fc.assert(
       fc.property(rates, fc.double({ min: 50, max: 5000, noNaN: true }), (rate, virgaDepth) => {
         const depth = 3000 - fallFloor(3000, virgaDepth)
         // Rates go with the square of the rank.
-        const rank = Math.sqrt(3)
+        const rank = Math.sqrt(STRONGEST)
         expect(rateOf(rate, rank, 1.005 * depth, virgaDepth)).toBeLessThan(1e-6 * rate)
         expect(rateOf(rate, rank, 0.98 * depth, virgaDepth)).toBeGreaterThan(0)
       })

@@ -1,5 +1,5 @@
 import { Vector3 } from 'three'
-import { extinctionForm, fallForm } from '../../src/precipitation/fallForm'
+import { extinctionForm, fallForm, STRONGEST } from '../../src/precipitation/fallForm'
 import { dry } from '../../src/layers/precipitation'
 import { windAxis } from '../../src/layers/wind'
 import { weatherAt, type CloudState } from './density'
@@ -51,6 +51,18 @@ export function rateOf(rate: number, rank: number, depth: number, virgaDepth: nu
 }
 
 /**
+ * Rate of a streak over that of its column: the normal distribution of logarithms with mean 1.
+ *
+ * @param deviations - Noise that blur has left, over its deviation.
+ */
+export function streakOf(deviations: number, amount: number, lost: number): number {
+  const { coarseStreaks, fineStreaks } = fallForm
+  const deviation = Math.hypot(coarseStreaks, fineStreaks) * amount * (1 - lost)
+  const median = Math.exp(-(deviation ** 2) / 2)
+  return Math.min(median * Math.exp(deviation * deviations), STRONGEST)
+}
+
+/**
  * Rank of the column from which it falls at a place, by planet-centred coordinates: `fallenFrom` of tsl/fall.ts, without streaks.
  *
  * @param position - Displacement from the planet's centre, in the mapped space [m].
@@ -72,7 +84,10 @@ export function fallenRank(
     layer.shear * (layer.baseAltitude - altitude)
   const axis = windAxis(layer.wind, state.zenith ?? up, new Vector3())
   const source = position.clone().addScaledVector(axis.cross(up), lag)
-  const { sum, coverage } = weatherAt(state, noise, index, source, distance)
+  const { mixing, mostMixing } = fallForm
+  const mixed = Math.min((layer.topAltitude - layer.baseAltitude) * mixing, mostMixing)
+  const width = Math.max(distance, mixed / state.pixelAngle)
+  const { sum, coverage } = weatherAt(state, noise, index, source, width)
   const fromTop = 1 - 1 / (1 + Math.exp(-1.702 * sum))
   return Math.max(1 - fromTop / (coverage * share), 0)
 }

@@ -4,10 +4,11 @@ import { billows, levelOf } from '../../density/tsl/billows'
 import type { LayerNodes } from '../../density/tsl/layer'
 import { subpointOffset, type CloudSample } from '../../density/tsl/sample'
 import { backgroundAt } from '../../density/tsl/sampler'
+import { strengthForm } from '../../density/formConstants'
 import type { WeatherMap } from '../../density/WeatherMap'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
 import { layout, type Float, type Variable, type Vec2, type Vec3 } from '../../tsl-types'
-import { extinctionForm, fallForm } from '../fallForm'
+import { extinctionForm, fallForm, STRONGEST } from '../fallForm'
 import { fallColumn, type FallNodes } from './fallColumn'
 
 /** Precipitation at a place. */
@@ -67,6 +68,27 @@ export const fallRate = /*#__PURE__*/ Fn(
   })
 )
 
+/** Variance of the streaks' noise near by. */
+const STREAK_VARIANCE = fallForm.coarseStreaks ** 2 + fallForm.fineStreaks ** 2
+
+/**
+ * Rate of a streak over that of its column: of a normal distribution of logarithms, as rates of rain have, with mean 1. Twin:
+ * test/twins/precipitation.ts
+ *
+ * @param noise - Sum of billows, whose variance is that of `fallForm` where none are lost.
+ * @param amount - Factor of the noise.
+ * @param lost - Share of the billows' deviation that blur has taken, in [0, 1].
+ * @see Crow & Shimizu 1988, "Lognormal distributions", chapter 8, "Applications in atmospheric sciences"
+ */
+export const fallStreak = /*#__PURE__*/ Fn(
+  ([noise, amount, lost]: [Float, Float, Float]) => {
+    const deviation = amount.mul(lost.oneMinus()).toConst()
+    const mean = deviation.mul(deviation).mul(STREAK_VARIANCE / 2)
+    return noise.mul(amount).sub(mean).exp().min(STRONGEST)
+  },
+  layout('precipitationStreak', 'float', { noise: 'float', amount: 'float', lost: 'float' })
+)
+
 /** Extinction [1/m]: `extinctionForm`. Twin: test/twins/precipitation.ts */
 export const fallExtinction = /*#__PURE__*/ Fn(
   ([rate, snow, hail]: [Float, Float, Float]) => {
@@ -88,7 +110,7 @@ export const snowShare = (altitude: Float, freezingLevel: Float): Float =>
  * Precipitation of a layer at a place. To be called inside of a shader function.
  *
  * It left its cloud downwind, where the wind that grows with height has carried that in the meantime: the column's rank is looked up
- * there. Streaks are billows of the base at the same point.
+ * there. Streaks are billows of the cloud at the same point.
  */
 export function fallenFrom(
   field: CloudField,
@@ -116,17 +138,15 @@ export function fallenFrom(
       fallColumn(field, layer, nodes, backgroundAt(field, layer, above), subpoint, footprint)
     rank.assign(column.x.max(0))
     If(rank.greaterThan(0), () => {
-      const atBase = offset.add(up.mul(baseAltitude.sub(altitude))).toConst() as Vec3
+      const rise = layer.thickness.mul(fallForm.streakHeight).add(baseAltitude).sub(altitude)
+      const source = offset.add(up.mul(rise)).toConst() as Vec3
       const blur = drift.length().mul(fallForm.lagBlur).add(depth.mul(fallForm.fallBlur))
       const width = footprint.max(blur).mul(layer.perShapePeriod)
       const level = levelOf(width, 1 / NOISE_SIZE.shape)
-      const { coarse, fine } = billows(field, layer, atBase, column.zw, level)
-      const streak = coarse
-        .mul(fallForm.coarseStreaks)
-        .add(fine.mul(fallForm.fineStreaks))
-        .mul(layer.shapeAmount)
-        .add(1)
-        .max(0)
+      const { coarse, fine } = billows(field, layer, source, column.zw, level)
+      const noise = coarse.mul(fallForm.coarseStreaks).add(fine.mul(fallForm.fineStreaks))
+      const lost = smoothstep(...strengthForm.billowLevels, level)
+      const streak = fallStreak(noise, nodes.streaks.mul(layer.shapeAmount), lost)
       const onset = ceiling.sub(altitude).div(ceiling.sub(baseAltitude)).clamp(0, 1)
       rate.assign(fallRate(nodes.rate, rank, streak, depth.mul(nodes.perVirga)).mul(onset))
     })

@@ -23,8 +23,7 @@ import { distanceAt, type FallStretch } from './fallStretch'
 /** Steps of a ray over the quality's `layerSteps`. Fewer: grain in far shafts (*Rain and snow*). */
 const STEPS = 0.4
 
-/** Shortest mean length of steps [m], and fewest steps: rays to the ground nearby and up to the clouds are short. */
-const SHORTEST = 1200
+/** Fewest steps: rays to the ground nearby and up to the clouds are short. */
 const LEAST = 3
 
 /** Share of a step's length up to which the weather is blurred [–]. Smaller: grain far away. */
@@ -48,6 +47,8 @@ export interface SeenPrecipitation {
   readonly depthToLight: Float
   /** depth of precipitation towards the light, */
   readonly ownDepth: Float
+  /** share of flakes and stones, in [0, 1], */
+  readonly flakes: Float
   /** and direct light that arrives unscattered, over that above the clouds, of drops and of flakes. */
   readonly lit: Vec2
 }
@@ -61,6 +62,8 @@ export interface FallSpace {
   readonly ceiling: Float
   /** Way of level light through what falls [m]. */
   readonly width: Float
+  /** Shortest mean length of steps [m]. */
+  readonly shortest: Float
 }
 
 /**
@@ -71,7 +74,7 @@ export interface FallSpace {
  */
 export function marchPrecipitation(
   context: ShadingContext,
-  { fallOf, layers, ceiling, width }: FallSpace,
+  { fallOf, layers, ceiling, width, shortest }: FallSpace,
   { direction, jitter }: Omit<CloudRay, 'end'>,
   stretch: FallStretch,
   points: SeenPoints
@@ -80,7 +83,7 @@ export function marchPrecipitation(
   const { view } = field
   const { span } = stretch
   const count = span
-    .div(SHORTEST)
+    .div(shortest)
     .clamp(LEAST, quality.layerSteps.mul(STEPS))
     .ceil()
     .toConst() as Float
@@ -88,7 +91,7 @@ export function marchPrecipitation(
   const before = vec4(1).toVar() as Variable<Vec4>
   /** Weight, and sums by it: distance, rank, logarithm of the depth to the light. */
   const sums = vec4(0).toVar() as Variable<Vec4>
-  /** Sums of light on drops and on flakes, and of the depth of precipitation to the light. */
+  /** Sums of light on drops and on flakes, of the depth of precipitation to the light, and of the share of flakes. */
   const lights = vec4(0).toVar() as Variable<Vec4>
   If(span.greaterThan(1), () => {
     loop('fallStep', count.toInt(), index => {
@@ -149,7 +152,7 @@ export function marchPrecipitation(
           const flakes = found.y.div(found.x).toConst() as Float
           const ofClouds = clouds.sub(own.mul(mapped)).max(0)
           sums.addAssign(vec4(1, at, found.z.div(found.x), ofClouds.add(1).log()).mul(seen))
-          lights.addAssign(vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), 0))
+          lights.addAssign(vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), flakes.mul(seen)))
         })
         const ahead = points.distances.sub(start).clamp(0, length)
         before.mulAssign(ahead.mul(extinction).negate().exp())
@@ -166,6 +169,7 @@ export function marchPrecipitation(
     rank: sums.z.div(weight).toConst(),
     depthToLight: sums.w.div(weight).exp().sub(1).max(0).toConst(),
     ownDepth: lights.z.div(weight).toConst(),
+    flakes: lights.w.div(weight).toConst(),
     lit: vec2(lights.x, lights.y).toConst()
   }
 }
