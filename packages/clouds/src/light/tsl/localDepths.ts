@@ -39,10 +39,11 @@ const VERTICAL_WIDTH = 0.09
 const DECK_ABOVE = 0.35
 
 /**
- * Mean extinction of an isolated cloud to its layer's top or base: parts of that near the place and of the probed one; and of a deck. From single
- * clouds of a large-eddy simulation, as is the weight of the shadow map's depths, which grows with the light's height.
+ * Mean extinction of an isolated cloud to its layer's top or base: parts of that near the place and of the probed one; and
+ * of a deck. Tops lie below their layer's, bases at it. From single clouds of a large-eddy simulation, as is the weight of the shadow map's depths, which grows with the light's height.
  */
-const ISOLATED_MEAN = [0.03, 0.35] as const
+const ISOLATED_ABOVE = [0.03, 0.31] as const
+const ISOLATED_BELOW = [0.03, 0.4] as const
 const DECK_MEAN = [0.175, 0.5] as const
 const DECK_BELOW = 0.7
 const MAPPED = 0.8
@@ -144,9 +145,8 @@ export function localDepths(
     .toConst() as Float
   const deckAbove = rise.mul(found.x.mul(DECK_MEAN[0]).add(found.z.mul(DECK_MEAN[1]))).toConst()
   const deckBelow = fall.mul(found.x).mul(DECK_BELOW).toConst() as Float
-  const [near, probedPart] = ISOLATED_MEAN
-  const ownAbove = rise.mul(found.x.mul(near).add(found.z.mul(probedPart)))
-  const ownBelow = fall.mul(found.x.mul(near).add(found.w.mul(probedPart)))
+  const ownAbove = rise.mul(found.x.mul(ISOLATED_ABOVE[0]).add(found.z.mul(ISOLATED_ABOVE[1])))
+  const ownBelow = fall.mul(found.x.mul(ISOLATED_BELOW[0]).add(found.w.mul(ISOLATED_BELOW[1])))
   // The shadow map knows the whole depths; the higher the light, the more are they the vertical's.
   const known = cosLight.abs().pow(MAPPED_POWER).mul(MAPPED).mul(unmapped.oneMinus()).toConst()
   const lit = depthToLight.mul(cosLight.abs()).toConst() as Float
