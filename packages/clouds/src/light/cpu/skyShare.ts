@@ -14,7 +14,5 @@ export const skyShareFit = {
   power: 0.52,
   slope: -1.4,
   thinSlope: 2.05,
-  decay: 0.04,
-  /** Scaled depth from which clouds that are not resolved are opaque: one sees their near faces only. */
-  unresolvedDepth: 50
+  decay: 0.04
 } as const

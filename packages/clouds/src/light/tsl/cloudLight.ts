@@ -83,7 +83,7 @@ export interface CloudAmbientNodes {
   layered: Float
   /** The view ray against the local up. */
   cosView: Float
-  /** 1 where clouds are resolved one by one, 0 where not, whose depths are a mean's; left out, 1. */
+  /** 1 where clouds are resolved one by one, 0 where not, whose mean depths are a slab's; left out, 1. */
   resolved?: Float
 }
 
@@ -109,14 +109,7 @@ export function cloudAmbientShares(
   const sky = at(uv, cosView)
   // The same slab seen from below.
   const ground = at(vec2(uv.x.oneMinus(), uv.y), cosView.negate().toConst())
-  const whole = depthAbove.max(0).add(depthBelow.max(0)).toConst() as Float
-  const thin = whole.div(-fit.unresolvedDepth).exp().toConst() as Float
-  // From above one sees the upper faces of clouds, though rays cross the mean of unresolved ones.
-  const shift = resolved.oneMinus().mul(thin.oneMinus()).mul(cosView).toConst() as Float
-  const fromAbove = depthAbove.max(0).mul(shift.min(0))
-  const fromBelow = depthBelow.max(0).mul(shift.max(0))
-  const high = depthAbove.max(0).add(fromAbove).add(fromBelow).toConst() as Float
-  const low = depthBelow.max(0).sub(fromAbove).sub(fromBelow).toConst() as Float
+  const [high, low] = [depthAbove, depthBelow].map(depth => depth.max(0).toConst() as Float)
   const slope = high.add(low).mul(-fit.decay).exp().mul(fit.thinSlope).add(fit.slope)
   const logit = low
     .add(fit.face)
@@ -125,9 +118,7 @@ export function cloudAmbientShares(
     .mul(fit.power)
     .add(slope.mul(cosView))
   const share = logit.negate().exp().add(1).reciprocal()
-  // Thin unresolved clouds are lit like slabs of their mean.
-  const known = resolved.oneMinus().mul(thin).oneMinus()
   const both = sky.add(ground).toConst()
-  const skyShare = mix(sky, both.mul(share), layered.oneMinus().mul(known)).toConst()
+  const skyShare = mix(sky, both.mul(share), layered.oneMinus().mul(resolved)).toConst()
   return { sky: skyShare, ground: both.sub(skyShare).toConst() }
 }
