@@ -34,13 +34,10 @@ export const lateralLeakFit = {
   diameterPerChord: 1.5,
   /**
    * Diameter over chord of clouds that are not resolved one by one, whose depths are of their mean extinction: under a
-   * level light and with a scaled depth of `unresolvedDepth`; its change to the zenith, and with the logarithm of the depth,
-   * for storms are wider; and weight of their chords along view ray and vertical. By these they are within 20 % as bright as
-   * resolved ones (e2e/gpu/clouds/far).
+   * level light, its change to the zenith; and weight of their chords along view ray and vertical. By these they are within 20 %
+   * as bright as resolved ones (e2e/gpu/clouds/far).
    */
   unresolvedDiameter: 1.35,
   unresolvedDiameterHigh: -0.21,
-  unresolvedDiameterDeep: 0.06,
-  unresolvedDepth: 100,
   unresolvedChords: 0.4
 } as const

@@ -4,8 +4,10 @@
  * to top and base and μ of the view ray against the local up. Between two diffuse hemispheres a slab's is ln of that ratio;
  * a cloud has less, because light enters it from its sides, too.
  *
- * Rounded from a fit to Monte-Carlo solutions of 24,000 places that are seen in clouds of a large-eddy simulation of cumulus, and
- * 8,000 of a thunderstorm.
+ * Rounded from a fit to Monte-Carlo solutions of 24,000 places that are seen in clouds of a large-eddy simulation of cumulus and
+ * 8,000 in a thunderstorm. In 26 pictures of the same clouds, path traced anew, with depths as the shader has them, its error has a median
+ * of 10 % and a 90th percentile of 24 % for cumulus (43 % and 208 % for the storm, whose undersides have next to nothing), and
+ * within a picture it is correlated with the share by 0.79.
  */
 export const skyShareFit = {
   face: 1,

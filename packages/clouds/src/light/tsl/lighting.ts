@@ -55,11 +55,7 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
   const depthBelow = depths.below.mul(scale).toConst() as Float
   const { resolved } = depths
   const height = source.cosine.abs()
-  const deepness = depthThrough.div(fit.unresolvedDepth).clamp(0.1, 10).log()
-  const unresolved = height
-    .mul(fit.unresolvedDiameterHigh)
-    .add(deepness.mul(fit.unresolvedDiameterDeep))
-    .add(fit.unresolvedDiameter)
+  const unresolved = height.mul(fit.unresolvedDiameterHigh).add(fit.unresolvedDiameter)
   const lit = {
     depthToLight: depths.toLight.mul(scale).toConst() as Float,
     depthThrough,
