@@ -5,7 +5,7 @@ import { randomSequence } from '../random'
 import { fieldBorder, forestAt, groundHeight, isField, isOnRoad } from './ground'
 import { VILLAGE } from './places'
 import { smoothNoise } from './noise'
-import { branchedSpruce, distantSpruce, distantTree, leafyTree, spruce } from './treeShapes'
+import { branchedSpruce, distantTree, leafyTree, spruce } from './treeShapes'
 import { Trees, type Tree } from './Trees'
 
 /** Distance from the village within which trees stand one by one [m]. */
@@ -23,7 +23,7 @@ const VILLAGE_BORDER = 6
 /** Spruces on the slopes. */
 export const createForest = (count: number, snowCover = NO_SNOW): Trees =>
   new Trees(
-    [branchedSpruce(9, 6), spruce(5, 8), distantSpruce(4)],
+    [branchedSpruce(9, 6), spruce(5, 8), spruce(1, 4)],
     DISTANCES,
     plant(count, 11, (x, z, height) => forestAt(x, z) + (height > 2 ? 0.004 : 0)),
     1,
