@@ -51,9 +51,6 @@ export const FARMED = 40
 /** Depth by which the snow line comes down while snow lies everywhere [m]. */
 const FALLEN_SNOW = 2300
 
-/** Share of the snow that one does not see in woods. */
-const WOODED_SNOW = 0.55
-
 /** Half width of the road from the village to the lake [m]. */
 export const HALF_ROAD = 2.2
 
@@ -216,9 +213,7 @@ export function groundMaterial(
   const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW))
   const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
-  // Crowns keep it off the ground, and hide it.
-  const open = forest.mul(WOODED_SNOW).oneMinus()
-  color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)).mul(open))
+  color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)))
   material.colorNode = color
   material.emissiveNode = lamplight
   return material
