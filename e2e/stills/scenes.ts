@@ -158,7 +158,7 @@ const valleys: ValleyStill[] = [
   {
     name: 'valley-evening',
     about: 'low sun among broken clouds',
-    valley: { view: 'shore', hour: 18.7, weather: 'broken' }
+    valley: { view: 'shore', hour: 18.4, weather: 'broken' }
   },
   {
     name: 'valley-night',

@@ -133,7 +133,7 @@ export const Morning: Story = { args: { hour: 5, weather: 'mist', view: 'slope',
 
 /** The sun sets among broken clouds. */
 export const Evening: Story = {
-  args: { hour: 18.7, weather: 'broken', view: 'shore', dayLength: 1800 }
+  args: { hour: 18.4, weather: 'broken', view: 'shore', dayLength: 1800 }
 }
 
 /** The village's windows are lit; the moon and the stars are. */

@@ -59,11 +59,10 @@ export class Land extends Group {
     const lamplight = this.#lamps.reflected()
     this.#ground = createGround(QUADS[quality], this.#falling.water, this.#relief, lamplight)
     const trees = TREES[quality]
-    const { snowCoverNode } = this.#falling.water
     this.#trees = [
-      createForest(trees, snowCoverNode),
-      createGrove(Math.round(trees / 16), snowCoverNode),
-      createBirches(Math.round(trees / 48), snowCoverNode)
+      createForest(trees),
+      createGrove(Math.round(trees / 16)),
+      createBirches(Math.round(trees / 48))
     ]
     this.add(this.#ground, ...this.#trees)
     this.showTrees(this.#hasTrees)

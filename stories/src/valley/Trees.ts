@@ -1,9 +1,7 @@
 import { Color, DoubleSide, Group, InstancedMesh, Vector3 } from 'three'
 import type { BufferGeometry, Matrix4, PerspectiveCamera } from 'three'
-import { attribute } from 'three/tsl'
-import type { Node } from 'three/webgpu'
 import { disposeMeshes } from '../scene'
-import { setFoliage, underSnow } from './leaves'
+import { setFoliage } from './leaves'
 import { VertexLitMaterial } from './VertexLitMaterial'
 
 /** A tree: its place and size, and its brightness over that of its kind. */
@@ -39,23 +37,20 @@ export class Trees extends Group {
    * @param geometries - Finest to coarsest, with vertex colours.
    * @param distances - Distances from which each but the first is drawn [m].
    * @param leafy - Number of geometries that have leaves with gaps, see {@link setFoliage}.
-   * @param snowCover - Snow that lies, in [0, 1].
    */
   constructor(
     geometries: readonly BufferGeometry[],
     distances: readonly number[],
     trees: readonly Tree[],
-    leafy: number,
-    snowCover: Node<'float'>
+    leafy: number
   ) {
     super()
     this.#trees = trees
     this.#distances = distances
-    const near = new VertexLitMaterial({ side: DoubleSide })
-    setFoliage(near, snowCover)
+    const near = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
+    setFoliage(near)
     // Gaps are smaller than pixels elsewhere.
-    const far = new VertexLitMaterial({ side: DoubleSide })
-    far.colorNode = underSnow(attribute<'vec3'>('color', 'vec3'), snowCover)
+    const far = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
     this.levels = geometries.map((geometry, level) => {
       const mesh = new InstancedMesh(geometry, level < leafy ? near : far, trees.length)
       mesh.setColorAt(0, new Color())

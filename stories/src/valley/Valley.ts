@@ -104,12 +104,7 @@ export class Valley {
   readonly #glows = [milkyWay(), stars(), airglow()] as const
   readonly #lamps = new StreetLamps(doors())
   readonly #land = new Land(this.#falling, this.#lamps)
-  readonly #village = createVillage(
-    groundHeight,
-    VILLAGE,
-    this.#lamps,
-    this.#falling.water.snowCoverNode
-  )
+  readonly #village = createVillage(groundHeight, VILLAGE, this.#lamps)
   readonly #mirror: LakeMirror
   readonly #water
   readonly #node

@@ -1,11 +1,9 @@
 import { Color, Matrix4, Quaternion, Vector3 } from 'three'
-import { float } from 'three/tsl'
-import type { Node } from 'three/webgpu'
 import { randomSequence } from '../random'
 import { fieldBorder, forestAt, groundHeight, isField, isOnRoad } from './ground'
 import { VILLAGE } from './places'
 import { smoothNoise } from './noise'
-import { branchedSpruce, distantSpruce, distantTree, leafyTree, spruce } from './treeShapes'
+import { branchedSpruce, distantTree, leafyTree, spruce } from './treeShapes'
 import { Trees, type Tree } from './Trees'
 
 /** Distance from the village within which trees stand one by one [m]. */
@@ -14,24 +12,20 @@ const REACH = 2600
 /** Distances from which trees are drawn with fewer triangles, and with the fewest [m]. */
 const DISTANCES = [130, 420] as const
 
-/** Snow on trees where none is given. */
-const NO_SNOW: Node<'float'> = float(0)
-
 /** Number of the border between fields that is nearest to the village. */
 const VILLAGE_BORDER = 6
 
 /** Spruces on the slopes. */
-export const createForest = (count: number, snowCover = NO_SNOW): Trees =>
+export const createForest = (count: number): Trees =>
   new Trees(
-    [branchedSpruce(9, 6), spruce(5, 8), distantSpruce(4)],
+    [branchedSpruce(9, 6), spruce(5, 8), spruce(1, 4)],
     DISTANCES,
     plant(count, 11, (x, z, height) => forestAt(x, z) + (height > 2 ? 0.004 : 0)),
-    1,
-    snowCover
+    1
   )
 
 /** Broad-leaved trees about the village, along the shore, in hedges and copses. */
-export function createGrove(count: number, snowCover = NO_SNOW): Trees {
+export function createGrove(count: number): Trees {
   const hedges = hedgesNear(0.25 * count)
   const others = plant(count - hedges.length, 23, (x, z, height) => {
     const fromVillage = Math.hypot(x - VILLAGE.x, z - VILLAGE.z)
@@ -45,13 +39,12 @@ export function createGrove(count: number, snowCover = NO_SNOW): Trees {
     [leafyTree('lime', 11), leafyTree('lime', 3), distantTree('lime', 2)],
     DISTANCES,
     hedges.concat(others),
-    2,
-    snowCover
+    2
   )
 }
 
 /** Birches among them. */
-export const createBirches = (count: number, snowCover = NO_SNOW): Trees =>
+export const createBirches = (count: number): Trees =>
   new Trees(
     [leafyTree('birch', 10), leafyTree('birch', 3), distantTree('birch', 2)],
     DISTANCES,
@@ -60,8 +53,7 @@ export const createBirches = (count: number, snowCover = NO_SNOW): Trees =>
       const shore = height > 1.2 && height < 4 ? 0.2 : 0
       return height > 1.2 && height < 120 ? shore + copse : 0
     }),
-    2,
-    snowCover
+    2
   )
 
 /** Trees in rows between fields, from the village outwards; rows have gaps. */

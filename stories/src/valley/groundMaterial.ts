@@ -51,9 +51,6 @@ export const FARMED = 40
 /** Depth by which the snow line comes down while snow lies everywhere [m]. */
 const FALLEN_SNOW = 2300
 
-/** Share of the snow that one does not see in woods. */
-const WOODED_SNOW = 0.55
-
 /** Half width of the road from the village to the lake [m]. */
 export const HALF_ROAD = 2.2
 
@@ -100,13 +97,9 @@ const NEAR = 200
 const GRASS = 0.1
 const SHADED = 140
 
-/** Height of crowns and rocks over the noise that they follow [m], and distance within which they shade themselves [m]. */
+/** Height of crowns over the noise that they follow [m], and distance within which woods shade themselves [m]. */
 const CROWNS = 5
-const CRAGS = 5
-const CRAGGED = 14_000
-
-/** Height of two beds of rock, a hard and a soft one [m]. */
-const BED = 36
+const WOODED = 14_000
 
 /** Width of the edge of a wood, in its share of the ground. */
 const EDGE = 0.16
@@ -164,7 +157,7 @@ export function groundMaterial(
     })
     return sum
   })().toVar()
-  const clumps = noise(71).mul(upTo(3500)).toVar()
+  const clumps = noise(71).mul(upTo(2500)).toVar()
   const fine = grain.add(clumps).add(patches).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const rough = broad.mul(0.5).add(patches).toVar()
@@ -177,7 +170,6 @@ export function groundMaterial(
   const wooded = cover.x.add(uneven.mul(smoothstep(0, 0.25, cover.x)))
   const forest = smoothstep(0.42 - EDGE, 0.42 + EDGE, wooded).toVar()
   const rocky = smoothstep(0.27, 0.42, slope).toVar()
-  const crags = clumps.mul(0.35).add(patches).mul(CRAGS).mul(rocky)
   const crowns = clumps.mul(0.6).add(patches).mul(CROWNS).mul(forest)
   // Seen along the ground, differences between pixels are those of noise.
   const facing = smoothstep(
@@ -185,11 +177,7 @@ export function groundMaterial(
     0.45,
     broadNormal.dot(cameraPosition.sub(positionWorld).normalize())
   )
-  const relieved = crags
-    .add(crowns)
-    .mul(upTo(CRAGGED))
-    .mul(facing)
-    .add(grain.mul(GRASS).mul(upTo(SHADED)))
+  const relieved = crowns.mul(upTo(WOODED).mul(facing)).add(grain.mul(GRASS).mul(upTo(SHADED)))
   const normal = grainNormal(broadNormal, relieved).toVar()
   material.normalNode = transformNormalToView(normal)
   const dry = broad.mul(0.6).add(fine.mul(0.45)).add(0.45).clamp()
@@ -203,21 +191,7 @@ export function groundMaterial(
     return ground
   })()
   const trees = mix(vec3(0.01, 0.019, 0.008), vec3(0.036, 0.052, 0.019), fine.add(0.45).clamp())
-  // Beds of rock, a little uneven.
-  const beds = sin(
-    height
-      .mul((2 * Math.PI) / BED)
-      .add(patches.mul(2.5))
-      .add(broad.mul(5))
-  )
-    .mul(
-      sin(height.mul((2 * Math.PI) / (3.3 * BED)).add(broad.mul(9)))
-        .mul(0.5)
-        .add(0.6)
-    )
-    .mul(upTo(12_000))
-  const face = fine.mul(0.8).add(beds.mul(0.28)).add(0.5).clamp()
-  const rock = mix(vec3(0.105, 0.1, 0.092), vec3(0.265, 0.25, 0.225), face)
+  const rock = mix(vec3(0.13, 0.125, 0.115), vec3(0.25, 0.235, 0.21), fine.mul(0.7).add(0.5))
   const alpine = mix(
     vec3(0.095, 0.1, 0.045),
     rock,
@@ -239,9 +213,7 @@ export function groundMaterial(
   const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW))
   const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
-  // Crowns keep it off the ground, and hide it.
-  const open = forest.mul(WOODED_SNOW).oneMinus()
-  color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)).mul(open))
+  color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)))
   material.colorNode = color
   material.emissiveNode = lamplight
   return material

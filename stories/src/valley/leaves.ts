@@ -7,16 +7,14 @@ import {
 } from 'three'
 import {
   attribute,
-  mix,
   normalViewGeometry,
-  normalWorldGeometry,
   positionView,
   smoothstep,
   texture,
   uv,
   vec3
 } from 'three/tsl'
-import type { Node, NodeMaterial } from 'three/webgpu'
+import type { NodeMaterial } from 'three/webgpu'
 import { randomSequence } from '../random'
 
 /** Texels along an edge of each of the two halves of the picture. */
@@ -29,10 +27,6 @@ const SIDE_TWIGS = 32
 /** Coverage of leaves from which a place is solid, near and far: far away pictures are means, of which gaps take most. */
 const SOLID = [0.5, 0.34] as const
 const FAR = 160
-
-/** Colour of snow on trees and roofs, linear sRGB, and the share of what faces up that it hides. */
-const SNOW = [0.78, 0.8, 0.84] as const
-const LIES = 0.85
 
 /** Blue of vertices in the shade of a crown over their green, at most. */
 const SHADED = 0.12
@@ -109,17 +103,11 @@ function createLeafTexture(): DataTexture {
   return picture
 }
 
-/** Colour of what stands in snowfall: white where it faces up. */
-export const underSnow = (color: Node<'vec3'>, snowCover: Node<'float'>): Node<'vec3'> =>
-  mix(color, vec3(...SNOW), smoothstep(0.1, 0.75, normalWorldGeometry.y).mul(snowCover).mul(LIES))
-
 /**
  * Gives a material of trees their leaves and needles, by texture coordinates: bark, of which vertices are redder than green, and
  * leaves in the shade, which are less blue than {@link SHADED}, have none. Leaves are lit by the normals of their vertices from both sides.
- *
- * @param snowCover - Snow that lies, in [0, 1]: the material has its vertices' colours with it, and no `vertexColors`.
  */
-export function setFoliage(material: NodeMaterial, snowCover: Node<'float'> | null = null): void {
+export function setFoliage(material: NodeMaterial): void {
   const picture = createLeafTexture()
   material.addEventListener('dispose', () => picture.dispose())
   const leaf = texture(picture, uv()).toConst()
@@ -131,7 +119,6 @@ export function setFoliage(material: NodeMaterial, snowCover: Node<'float'> | nu
     .mul(far - near)
     .add(near)
   material.maskNode = leaf.g.greaterThan(solid).or(isBark)
-  const bright = isBark.select(1, leaf.r.mul(1.25).add(0.22))
-  material.colorNode = snowCover === null ? vec3(bright) : underSnow(color.mul(bright), snowCover)
+  material.colorNode = vec3(isBark.select(1, leaf.r.mul(1.25).add(0.22)))
   material.normalNode = normalViewGeometry
 }

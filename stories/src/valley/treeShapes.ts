@@ -41,23 +41,6 @@ function painted(geometry: BufferGeometry, [r, g, b]: Color, shade = 1): BufferG
   return geometry.setAttribute('color', new Float32BufferAttribute(colors, 3))
 }
 
-/** A closed or open body without two vertices at a place, lit as round about its axis; without texture coordinates. @param size - Its radius. */
-function mergedCorners(body: BufferGeometry, size: number): BufferGeometry {
-  body.deleteAttribute('uv')
-  body.deleteAttribute('normal')
-  const merged = mergeVertices(body)
-  const { position } = merged.attributes
-  const [normals, normal] = [new Float32Array(3 * position.count), new Vector3()]
-  for (let i = 0; i < position.count; i++) {
-    normal
-      .fromBufferAttribute(position, i)
-      .setY(0.35 * size)
-      .normalize()
-      .toArray(normals, 3 * i)
-  }
-  return merged.setAttribute('normal', new Float32BufferAttribute(normals, 3))
-}
-
 /** A ball of few faces, lit as round. */
 function ball(size: number): BufferGeometry {
   const faces = new IcosahedronGeometry(size, 0)
@@ -152,14 +135,7 @@ export function spruce(tiers: number, sides: number): BufferGeometry {
     cone.translate(0, 0.9 + 0.9 * height + (i * (8.2 - height)) / tiers, 0)
     return painted(cone.rotateY(i), NEEDLES, 0.55)
   })
-  return mergeGeometries(cones)
-}
-
-/** A spruce of the distance, 10 m high: a cone of as few vertices as there are corners. @param sides - Its sides. */
-export function distantSpruce(sides: number): BufferGeometry {
-  const height = 9 / 1.6
-  const cone = mergedCorners(new ConeGeometry(2, 1.8 * height, sides, 1, true), 2)
-  return painted(cone.translate(0, 0.9 + 0.9 * height, 0), NEEDLES, 0.55)
+  return tiers === 1 ? cones[0] : mergeGeometries(cones)
 }
 
 /** Shape of the crown of a broad-leaved tree. */

@@ -27,7 +27,6 @@ import {
 import type { Node } from 'three/webgpu'
 import { randomSequence } from '../random'
 import { groundHeight } from './ground'
-import { underSnow } from './leaves'
 import { VILLAGE } from './places'
 import { roof, roofColor } from './roof'
 import type { StreetLamps } from './StreetLamps'
@@ -173,13 +172,11 @@ function churchLamp(x: number, y: number, z: number): PointLight & Pick<Village,
  * @param heightAt - Height of the ground at a place, default that of the valley [m].
  * @param middle - Place of the church, default by the valley's lake [m].
  * @param lamps - Lamps about it; by default one by the church.
- * @param snowCover - Snow on its roofs, in [0, 1].
  */
 export function createVillage(
   heightAt = groundHeight,
   middle: Readonly<Record<'x' | 'z', number>> = VILLAGE,
-  lamps: StreetLamps | null = null,
-  snowCover: Node<'float'> = float(0)
+  lamps: StreetLamps | null = null
 ): Village {
   const houses = housesAbout(middle)
   const lit = uniform(0)
@@ -221,7 +218,7 @@ export function createVillage(
   const lamplight = smoothstep(0.6, 0.12, positionGeometry.y).mul(0.9).add(0.1).mul(facing)
   walls.emissiveNode = lamps === null ? windows : windows.add(lamps.reflected().mul(lamplight))
   const tiles = new VertexLitMaterial()
-  tiles.colorNode = underSnow(roofColor(), snowCover)
+  tiles.colorNode = roofColor()
   const plaster = new VertexLitMaterial({ color: '#b9b1a2' })
   const slates = new VertexLitMaterial({ color: '#5b3a2e' })
   const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)
