@@ -2,6 +2,7 @@ import { airAtVertices } from '@welkin/atmosphere'
 import {
   BRDF_GGX,
   diffuseColor,
+  float,
   mix,
   normalView,
   positionViewDirection,
@@ -97,7 +98,12 @@ class GroundLightingModel extends PhysicalLightingModel {
     // Schlick's, of the light that enters.
     const entering = reflectance.oneMinus().mul(square.mul(square).mul(slant).oneMinus())
     directDiffuse.addAssign(irradiance.mul(albedo().mul(entering)).div(Math.PI))
-    const highlight = BRDF_GGX({ lightDirection: direction, f0: reflectance, f90: 1, roughness })
+    const highlight = BRDF_GGX({
+      lightDirection: direction,
+      f0: reflectance,
+      f90: float(1),
+      roughness
+    })
     directSpecular.addAssign(irradiance.mul(highlight as unknown as Vec3))
   }
 

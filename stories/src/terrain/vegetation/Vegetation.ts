@@ -167,7 +167,7 @@ export class Vegetation extends Group {
   }
 
   /** Frees geometries, materials and pictures; terrain and renderer are shared. */
-  dispose(): void {
+  override dispose(): void {
     for (const { pictures } of this.#trees) {
       pictures.color.dispose()
       pictures.normal.dispose()

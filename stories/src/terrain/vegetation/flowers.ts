@@ -10,7 +10,6 @@ import {
   varying,
   vec3
 } from 'three/tsl'
-import type { Node } from 'three/webgpu'
 import type { PlantCells } from './PlantCells'
 import {
   plantGeometry,
@@ -86,9 +85,11 @@ export function createFlowers(cells: PlantCells, uniforms: PlantUniforms): Mesh 
     transformNormalToView(turned(vec3(-0.4, 1, 0).normalize() as never) as never) as unknown as Vec3
   )
   const [stem, heart, ...petals] = [STEM, HEART, ...PETALS].map(([r, g, b]) => vec3(r, g, b))
-  const colored = petals.reduce((color, next, i) => mix(color, next, step(i - 0.5, tint)))
+  const colored = petals.reduce(
+    (color, next, i) => mix(color, next, step(i - 0.5, tint)) as unknown as typeof color
+  )
   const flowered = mix(heart, colored, smoothstep(0.15, 0.5, petal))
-  material.colorNode = mix(stem, flowered, step(-0.5, petal)) as unknown as Node
+  material.colorNode = mix(stem, flowered, step(-0.5, petal)) as unknown as Vec3
   const mesh = new Mesh(plantGeometry(flower(), cells), material)
   mesh.receiveShadow = true
   mesh.frustumCulled = false

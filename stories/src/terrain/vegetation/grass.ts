@@ -9,7 +9,6 @@ import {
   varying,
   vec3
 } from 'three/tsl'
-import type { Node } from 'three/webgpu'
 import { randomSequence } from '../../random'
 import type { PlantCells } from './PlantCells'
 import {
@@ -132,7 +131,7 @@ export function createGrass(
   const [green, straw] = [GREEN, STRAW].map(([r, g, b]) => vec3(r, g, b))
   const dry = tint.add(other.sub(0.5).mul(0.35)).clamp(0, 1)
   const light = mix(0.6, 1.9, tip).mul(random.mul(0.5).add(0.75))
-  material.colorNode = varying(mix(green, straw, dry).mul(light)) as unknown as Node
+  material.colorNode = varying(mix(green, straw, dry).mul(light)) as unknown as Vec3
   const mesh = new Mesh(plantGeometry(tuft(options as TuftOptions), cells), material)
   mesh.receiveShadow = true
   mesh.frustumCulled = false
