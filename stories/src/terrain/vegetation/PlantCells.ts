@@ -1,5 +1,6 @@
 import { groundSharesAt, type GroundShares, type Terrain } from '@welkin/terrain'
-import { InstancedBufferAttribute, MathUtils, Matrix4, Vector3 } from 'three'
+import type { Matrix4 } from 'three'
+import { InstancedBufferAttribute, MathUtils, Vector3 } from 'three'
 import { randomSequence } from '../../random'
 
 /** Square of the ground that plants stand on. */

@@ -1,5 +1,6 @@
 import type { Terrain } from '@welkin/terrain'
-import { Group, MathUtils, Matrix4, Mesh, Vector3, type Camera } from 'three'
+import type { Mesh } from 'three'
+import { Group, MathUtils, Matrix4, Vector3, type Camera } from 'three'
 import type { NodeMaterial, WebGPURenderer } from 'three/webgpu'
 import { branchedSpruce, leafyTree } from '../../valley/treeShapes'
 import { createFlowers, FLOWERS } from './flowers'

@@ -80,7 +80,7 @@ export function createFlowers(cells: PlantCells, uniforms: PlantUniforms): Mesh 
   )
   const sway = sin(uniforms.time.mul(2.1).add(foot.x).add(random.mul(6))).mul(place.y.mul(0.05))
   const lean = vec3(place.y.mul(other.sub(0.5)).mul(0.5).add(sway), 0, 0)
-  material.positionNode = foot.add(turned(tilted.add(lean).mul(shown).mul(size) as unknown as Vec3))
+  material.positionNode = foot.add(turned(tilted.add(lean).mul(shown).mul(size)))
   material.normalNode = varying(
     transformNormalToView(turned(vec3(-0.4, 1, 0).normalize() as never) as never) as unknown as Vec3
   )
