@@ -54,7 +54,7 @@ export const VIEWS = {
   }
 } satisfies Record<string, GroundView>
 
-/** The same views about another place. */
+/** Views of the same kinds about another place. */
 function viewsAbout({ longitude, latitude }: typeof VILLAGE): typeof VIEWS {
   const moved = Object.entries<GroundView>(VIEWS).map(([name, view]) => [
     name,
