@@ -247,7 +247,7 @@ export interface VegetationCost {
   /** A frame without and with it, GPU, no shadow map [ms]. */
   withoutMs: number
   ms: number
-  /** The same with a shadow map of 2048 texels [ms]. */
+  /** Frames without and with it, with a shadow map of 2048 texels [ms]. */
   withoutShadowMs: number
   shadowMs: number
   /** Time of planting all that is in view, CPU [ms]. */

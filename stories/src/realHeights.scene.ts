@@ -54,7 +54,7 @@ export const VIEWS = {
   }
 } satisfies Record<string, GroundView>
 
-/** The same views about another place. */
+/** Views of the same kinds about another place. */
 function viewsAbout({ longitude, latitude }: typeof VILLAGE): typeof VIEWS {
   const moved = Object.entries<GroundView>(VIEWS).map(([name, view]) => [
     name,
@@ -155,7 +155,7 @@ async function openGeoTIFF(url: string): Promise<Given> {
   // #endregion
   const [west, south, east, north] = image.getBoundingBox()
   const middle = { longitude: (west + east) / 2, latitude: (south + north) / 2 }
-  return { heights, middle, note: `${new URL(url, document.baseURI).pathname}` }
+  return { heights, middle, note: new URL(url, document.baseURI).pathname }
 }
 
 /** Heights of the arguments. */

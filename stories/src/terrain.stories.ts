@@ -54,7 +54,7 @@ type Story = StoryObj<TerrainArgs>
 /** Two metres above the ground, among mountains: the ground alone. */
 export const Meadow: Story = {}
 
-/** The same with grass, flowers and trees on it: a sample, no part of the package. */
+/** Grass, flowers and trees on it: a sample, no part of the package. */
 export const Plants: Story = { name: 'Meadow and woods', args: { vegetation: true } }
 
 /** One take: a shore, a summit, orbit. */

@@ -33,7 +33,10 @@ gpuTest(
     }
     const draw = async (height: number, longitude: number): Promise<void> => {
       const ground = terrain.heightAt(longitude, 47)
-      ellipsoid.geodeticToECEF({ longitude, latitude: 47, height: ground + height }, camera.position)
+      ellipsoid.geodeticToECEF(
+        { longitude, latitude: 47, height: ground + height },
+        camera.position
+      )
       camera.quaternion.setFromRotationMatrix(ellipsoid.localYUpFrame(camera.position, axes))
       camera.rotateX(-1)
       camera.near = height / 20

@@ -2,6 +2,7 @@ import { airAtVertices } from '@welkin/atmosphere'
 import {
   BRDF_GGX,
   diffuseColor,
+  float,
   mix,
   normalView,
   positionViewDirection,
@@ -36,9 +37,13 @@ interface LightingContext {
 const albedo = (): Vec3 => (diffuseColor as unknown as { rgb: Vec3 }).rgb
 
 /** Part of three's builder that is used. */
-interface EnvironmentBuilder {
+interface LightsBuilder {
   readonly environmentNode: unknown
   readonly material: { readonly envNode: unknown }
+  readonly lightsNode: {
+    getLightNodes(builder: NodeBuilder): unknown
+    setupLights(builder: NodeBuilder, nodes: unknown): void
+  }
 }
 
 /** Reflected light of three's lights. */
@@ -47,13 +52,6 @@ interface ReflectedLight {
   readonly directSpecular: Variable
   readonly indirectDiffuse: Variable
 }
-
-/** Start of all models of light: every light, then what comes from all sides. */
-const startOfAll = (
-  Object.getPrototypeOf(PhysicalLightingModel.prototype) as {
-    start(this: PhysicalLightingModel, builder: NodeBuilder): void
-  }
-).start
 
 /**
  * Light as of three's standard materials, and what the sides of hollows throw at each other of the sun's light and the sky's.
@@ -72,11 +70,16 @@ class GroundLightingModel extends PhysicalLightingModel {
   }
 
   override start(builder: NodeBuilder): void {
-    const { environmentNode, material } = builder as unknown as EnvironmentBuilder
+    const { environmentNode, material, lightsNode } = builder as unknown as LightsBuilder
     this.#mirrors = Boolean(environmentNode || material.envNode)
     this.#sunlight = vec3(0).toVar('sunlightOnGround') as unknown as Variable
-    if (this.#mirrors) super.start(builder)
-    else startOfAll.call(this, builder)
+    if (this.#mirrors) {
+      super.start(builder)
+      return
+    }
+    // As all models of light do: every light, then what comes from all sides.
+    lightsNode.setupLights(builder, lightsNode.getLightNodes(builder))
+    this.indirect(builder)
   }
 
   override direct(light: LightingModelDirectInput, builder: NodeBuilder): void {
@@ -97,7 +100,12 @@ class GroundLightingModel extends PhysicalLightingModel {
     // Schlick's, of the light that enters.
     const entering = reflectance.oneMinus().mul(square.mul(square).mul(slant).oneMinus())
     directDiffuse.addAssign(irradiance.mul(albedo().mul(entering)).div(Math.PI))
-    const highlight = BRDF_GGX({ lightDirection: direction, f0: reflectance, f90: 1, roughness })
+    const highlight = BRDF_GGX({
+      lightDirection: direction,
+      f0: reflectance,
+      f90: float(1),
+      roughness
+    })
     directSpecular.addAssign(irradiance.mul(highlight as unknown as Vec3))
   }
 

@@ -22,7 +22,7 @@ const sample: HeightSample = { height: 0, gradient: new Vector3() }
 const sum = { x: 0, y: 0, z: 0, value: 0 }
 
 /**
- * What the ground consists of at a place, by the rules that it is drawn by, for what stands on it: trees, steps, wheels. Single stones, the
+ * Shares of the ground's materials at a place, by the rules that it is drawn by, for what stands on it: trees, steps, wheels. Single stones, the
  * shade of hollows, masks and maps are left out.
  *
  * @param terrain - Ground, with heights that the CPU knows.

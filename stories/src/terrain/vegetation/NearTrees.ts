@@ -31,7 +31,7 @@ export class NearTrees extends Mesh<InstancedBufferGeometry, PlantMaterial> {
     setFoliage(material)
     const { foot, size, tint, turned } = plantNodes(uniforms)
     material.positionNode = foot.add(turned((positionGeometry as unknown as Vec3).mul(size)))
-    const normal = turned(attribute<'vec3'>('normal', 'vec3') as unknown as Vec3).normalize()
+    const normal = turned(attribute<'vec3'>('normal', 'vec3')).normalize()
     material.normalNode = varying(transformNormalToView(normal as never) as unknown as Vec3)
     const color = attribute<'vec3'>('color', 'vec3').mul(tint)
     material.colorNode = (material.colorNode as Vec3).mul(varying(color))

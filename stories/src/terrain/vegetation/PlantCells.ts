@@ -1,10 +1,11 @@
 import { groundSharesAt, type GroundShares, type Terrain } from '@welkin/terrain'
-import { InstancedBufferAttribute, MathUtils, Matrix4, Vector3 } from 'three'
+import type { Matrix4 } from 'three'
+import { InstancedBufferAttribute, MathUtils, Vector3 } from 'three'
 import { randomSequence } from '../../random'
 
 /** Square of the ground that plants stand on. */
 export interface GroundCell {
-  /** What the ground consists of in its middle. */
+  /** Materials of the ground in its middle. */
   readonly shares: GroundShares
   /** Numbers in [0, 1), the same for the same cell. */
   readonly random: () => number
@@ -74,7 +75,7 @@ export class PlantCells {
    * Plants cells that the viewer has come near to, until the time is up.
    *
    * @param x - Place of the viewer in the plants' frame [m], like `z`.
-   * @param toWorld - Of that frame: a plane that touches the ellipsoid at its origin, y up.
+   * @param toWorld - Matrix of that frame: a plane that touches the ellipsoid at its origin, y up.
    * @param until - As of `performance.now()`.
    * @returns True if any was planted.
    */

@@ -1,5 +1,6 @@
 import type { Terrain } from '@welkin/terrain'
-import { Group, MathUtils, Matrix4, Mesh, Vector3, type Camera } from 'three'
+import type { Mesh } from 'three'
+import { Group, MathUtils, Matrix4, Vector3, type Camera } from 'three'
 import type { NodeMaterial, WebGPURenderer } from 'three/webgpu'
 import { branchedSpruce, leafyTree } from '../../valley/treeShapes'
 import { createFlowers, FLOWERS } from './flowers'
@@ -167,7 +168,7 @@ export class Vegetation extends Group {
   }
 
   /** Frees geometries, materials and pictures; terrain and renderer are shared. */
-  dispose(): void {
+  override dispose(): void {
     for (const { pictures } of this.#trees) {
       pictures.color.dispose()
       pictures.normal.dispose()

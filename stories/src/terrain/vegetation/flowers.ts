@@ -10,7 +10,6 @@ import {
   varying,
   vec3
 } from 'three/tsl'
-import type { Node } from 'three/webgpu'
 import type { PlantCells } from './PlantCells'
 import {
   plantGeometry,
@@ -81,14 +80,16 @@ export function createFlowers(cells: PlantCells, uniforms: PlantUniforms): Mesh 
   )
   const sway = sin(uniforms.time.mul(2.1).add(foot.x).add(random.mul(6))).mul(place.y.mul(0.05))
   const lean = vec3(place.y.mul(other.sub(0.5)).mul(0.5).add(sway), 0, 0)
-  material.positionNode = foot.add(turned(tilted.add(lean).mul(shown).mul(size) as unknown as Vec3))
+  material.positionNode = foot.add(turned(tilted.add(lean).mul(shown).mul(size)))
   material.normalNode = varying(
     transformNormalToView(turned(vec3(-0.4, 1, 0).normalize() as never) as never) as unknown as Vec3
   )
   const [stem, heart, ...petals] = [STEM, HEART, ...PETALS].map(([r, g, b]) => vec3(r, g, b))
-  const colored = petals.reduce((color, next, i) => mix(color, next, step(i - 0.5, tint)))
+  const colored = petals.reduce(
+    (color, next, i) => mix(color, next, step(i - 0.5, tint)) as unknown as typeof color
+  )
   const flowered = mix(heart, colored, smoothstep(0.15, 0.5, petal))
-  material.colorNode = mix(stem, flowered, step(-0.5, petal)) as unknown as Node
+  material.colorNode = mix(stem, flowered, step(-0.5, petal)) as unknown as Vec3
   const mesh = new Mesh(plantGeometry(flower(), cells), material)
   mesh.receiveShadow = true
   mesh.frustumCulled = false

@@ -9,7 +9,6 @@ import {
   varying,
   vec3
 } from 'three/tsl'
-import type { Node } from 'three/webgpu'
 import { randomSequence } from '../../random'
 import type { PlantCells } from './PlantCells'
 import {
@@ -120,10 +119,8 @@ export function createGrass(
   const scaled = spine
     .mul(size.mul(shown))
     .add(edge.mul(shown.sqrt()).mul(size.greaterThan(0).select(1, 0)))
-  const outwards = turned(vec3(spine.x, 0, spine.z) as unknown as Vec3)
-  material.positionNode = foot
-    .add(turned(scaled as unknown as Vec3))
-    .add(vec3(sway, 0, sway.mul(0.6)).mul(size))
+  const outwards = turned(vec3(spine.x, 0, spine.z))
+  material.positionNode = foot.add(turned(scaled)).add(vec3(sway, 0, sway.mul(0.6)).mul(size))
   // As lit as the ground is, but for what leans.
   const normal = vec3(0, 1, 0)
     .add(outwards.mul(other.mul(1.2).add(0.5)))
@@ -132,8 +129,8 @@ export function createGrass(
   const [green, straw] = [GREEN, STRAW].map(([r, g, b]) => vec3(r, g, b))
   const dry = tint.add(other.sub(0.5).mul(0.35)).clamp(0, 1)
   const light = mix(0.6, 1.9, tip).mul(random.mul(0.5).add(0.75))
-  material.colorNode = varying(mix(green, straw, dry).mul(light)) as unknown as Node
-  const mesh = new Mesh(plantGeometry(tuft(options as TuftOptions), cells), material)
+  material.colorNode = varying(mix(green, straw, dry).mul(light)) as unknown as Vec3
+  const mesh = new Mesh(plantGeometry(tuft(options), cells), material)
   mesh.receiveShadow = true
   mesh.frustumCulled = false
   return mesh

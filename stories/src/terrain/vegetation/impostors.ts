@@ -143,7 +143,7 @@ export function createImpostors(
     )
       .mod(SIDES)
       .div(SIDES)
-  ).setInterpolation('flat' as never)
+  ).setInterpolation('flat')
   const at = vec2(uv().x.div(SIDES).add(side), uv().y.oneMinus()).toConst()
   const color = texture(pictures.color.texture, at).toConst() as unknown as Node<'vec4'>
   const normal = texture(pictures.normal.texture, at).toConst() as unknown as Node<'vec4'>
@@ -157,9 +157,7 @@ export function createImpostors(
     n.y,
     n.z.mul(cos(turn)).sub(n.x.mul(sin(turn)))
   )
-  material.normalNode = transformNormalToView(
-    turned.normalize() as never
-  ) as unknown as Node<'vec3'>
+  material.normalNode = transformNormalToView(turned.normalize())
   const mesh = new Mesh(
     plantGeometry(new PlaneGeometry(1, 1).translate(0, 0.5, 0), cells),
     material

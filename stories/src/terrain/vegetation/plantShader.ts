@@ -33,18 +33,13 @@ export function plantNodes({ viewer }: PlantUniforms): PlantNodes {
   const look = attribute<'vec4'>('plantLook', 'vec4')
   const [cosine, sine] = [cos(look.x).toConst(), sin(look.x).toConst()]
   return {
-    foot: place.xyz as unknown as Vec3,
-    size: place.w as unknown as Float,
-    random: look.y as unknown as Float,
-    other: look.z as unknown as Float,
-    tint: look.w as unknown as Float,
-    distance: place.xyz.sub(viewer).length().toConst() as unknown as Float,
-    turned: v =>
-      vec3(
-        v.x.mul(cosine).add(v.z.mul(sine)),
-        v.y,
-        v.z.mul(cosine).sub(v.x.mul(sine))
-      ) as unknown as Vec3
+    foot: place.xyz,
+    size: place.w,
+    random: look.y,
+    other: look.z,
+    tint: look.w,
+    distance: place.xyz.sub(viewer).length().toConst(),
+    turned: v => vec3(v.x.mul(cosine).add(v.z.mul(sine)), v.y, v.z.mul(cosine).sub(v.x.mul(sine)))
   }
 }
 

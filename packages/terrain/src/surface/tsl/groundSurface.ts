@@ -116,8 +116,8 @@ export function groundSurface(
   const desert = color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony)
   const scree = color(SCREE).mul(tone.mul(0.4).add(1)).mul(stony)
   // What high water left lies in strands, a metre above the sea.
-  const tangle = blade.mul(0.7).add(boulder.mul(0.6)).toConst('tangle')
-  const washed = overSea.add(boulder.mul(0.3)).add(patch.mul(0.5)).toConst()
+  const tangle = blade.mul(0.7).add(tuft.mul(0.7)).toConst('tangle')
+  const washed = overSea.add(tuft.mul(0.25)).add(patch.mul(0.5)).toConst()
   const strand = smoothstep(0.6, 0.9, washed).mul(smoothstep(1.1, 1.5, washed).oneMinus())
   const seaweed = strand.mul(smoothstep(0.02, 0.25, tangle)).mul(0.85)
   const sand = mix(color(SAND).mul(stone.mul(0.14).add(1)), color(SEAWEED), seaweed)
