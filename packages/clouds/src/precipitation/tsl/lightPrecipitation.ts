@@ -32,7 +32,7 @@ export const CLOUD_RADIUS = 0.15
 /** Phase function of two lobes [1/sr]. */
 function lobes([g, back, share]: readonly [number, number, number], cosine: Float): Float {
   const [first, second] = [g, back].map(each => henyeyGreenstein(float(each), cosine))
-  return mix(second, first, share).min(GREATEST).toConst() as Float
+  return mix(second, first, share).min(GREATEST).toConst()
 }
 
 /** Clouds above what is seen. */

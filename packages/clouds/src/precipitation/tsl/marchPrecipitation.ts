@@ -152,7 +152,9 @@ export function marchPrecipitation(
           const flakes = found.y.div(found.x).toConst() as Float
           const ofClouds = clouds.sub(own.mul(mapped)).max(0)
           sums.addAssign(vec4(1, at, found.z.div(found.x), ofClouds.add(1).log()).mul(seen))
-          lights.addAssign(vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), flakes.mul(seen)))
+          lights.addAssign(
+            vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), flakes.mul(seen))
+          )
         })
         const ahead = points.distances.sub(start).clamp(0, length)
         before.mulAssign(ahead.mul(extinction).negate().exp())
