@@ -46,6 +46,7 @@ import { createNoiseTexture } from '../../stories/src/globe/detailNoise'
 import { createCity, type City } from '../../stories/src/globe/city'
 import { cloudReference, REFERENCE_SKIPPING } from '../bench/clouds'
 import { Landscape } from '../../stories/src/hills/Landscape'
+import { aeroplaneShadow } from '../../stories/src/shafts/aeroplaneShadow'
 import { castLandShadow, LIGHT_DISTANCE } from '../../stories/src/shafts/landShadow'
 import { Ridge } from '../../stories/src/shafts/Ridge'
 import type { Still } from './scenes'
@@ -207,6 +208,7 @@ export class StillView {
       Object.assign(key.shadow, { shadowNode: cloudShadow(node, shadow(key), source) })
       cloudSkyLight(sky, node)
       shafts?.add(cloudAirShadow(node))
+      if (still.aeroplane) shafts?.add(aeroplaneShadow())
       node.field.bake(renderer)
       if (quality === cloudReference) node.field.skipping.value = REFERENCE_SKIPPING
       node.time = TIME

@@ -3,17 +3,19 @@ export const optics = [
   {
     name: 'optics-glory',
     about:
-      'from an aeroplane over an even, bright deck, the sun behind: coloured rings of 1 to 4° about the middle, the shadow point',
+      'from an aeroplane over a bright deck, the sun behind: its shadow, and about it coloured rings of 1 to 4°, red outside',
     clouds: {
       preset: 'overcast',
-      layer: { density: 0.005, shapeAmount: 0.25, edgeSoftness: 0.6 }
+      layer: { density: 0.012, shapeAmount: 0.7, edgeSoftness: 0.5 }
     },
-    dropletRadius: 8,
+    shafts: true,
+    aeroplane: true,
+    dropletRadius: 10,
     altitude: 2600,
     sun: { elevation: 38, azimuth: 210 },
     view: { azimuth: 30, pitch: -38 },
-    fieldOfView: 18,
-    compensation: 0.6,
+    fieldOfView: 20,
+    compensation: 0.8,
     place: { longitude: 150, latitude: 30 },
     land: 'planet'
   },

@@ -31,6 +31,8 @@ export interface Still {
   rain?: number
   /** Light shafts, of land and clouds, in the light of the sun or of the moon where there is one. */
   shafts?: true
+  /** Shadow on the clouds of an aeroplane that the camera looks out of. Needs `shafts`. */
+  aeroplane?: true
   /** Elevation and azimuth of a full moon, clockwise from north, whatever the date [°]. */
   moon?: { elevation: number; azimuth: number }
   /** Turbidity of the air; by default that of the standard Earth. */

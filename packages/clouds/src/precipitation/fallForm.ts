@@ -12,12 +12,6 @@ export const fallForm = {
   core: 2,
   /** Share of the layer's thickness over which rates set in above the base. 0: a gap below clouds (*Rain and snow*). */
   onset: 0.06,
-  /**
-   * Width over which what falls is mixed on its way down through the cloud, over the layer's thickness [–], and at most [m]. Smaller:
-   * curtains with hard sides (*Rain and snow*, snow shower).
-   */
-  mixing: 0.15,
-  mostMixing: 400,
   /** Depth below the freezing level in which snow melts [m]. */
   melting: 300,
   /**

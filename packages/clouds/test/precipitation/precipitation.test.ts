@@ -77,7 +77,7 @@ describe('precipitation', () => {
         // Billows have a normal distribution, near enough.
         let [mean, weights] = [0, 0]
         for (let z = -5; z <= 5; z += 0.01) {
-          const weight = Math.exp(-z * z / 2)
+          const weight = Math.exp((-z * z) / 2)
           mean += weight * streakOf(z, amount, lost)
           weights += weight
         }

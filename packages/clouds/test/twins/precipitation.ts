@@ -84,10 +84,7 @@ export function fallenRank(
     layer.shear * (layer.baseAltitude - altitude)
   const axis = windAxis(layer.wind, state.zenith ?? up, new Vector3())
   const source = position.clone().addScaledVector(axis.cross(up), lag)
-  const { mixing, mostMixing } = fallForm
-  const mixed = Math.min((layer.topAltitude - layer.baseAltitude) * mixing, mostMixing)
-  const width = Math.max(distance, mixed / state.pixelAngle)
-  const { sum, coverage } = weatherAt(state, noise, index, source, width)
+  const { sum, coverage } = weatherAt(state, noise, index, source, distance)
   const fromTop = 1 - 1 / (1 + Math.exp(-1.702 * sum))
   return Math.max(1 - fromTop / (coverage * share), 0)
 }

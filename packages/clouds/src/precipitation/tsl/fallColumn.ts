@@ -6,7 +6,6 @@ import { cloudWeather } from '../../density/tsl/weather'
 import { unpackBackground, type PackedBackground } from '../../density/tsl/weatherBackground'
 import { cumulative } from '../../noise/tsl/noiseChannels'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import { fallForm } from '../fallForm'
 
 /** Precipitation of a layer, as shaders see it: lengths [m], rates [mm/h of water]. */
 export interface FallNodes {
@@ -44,8 +43,7 @@ export function fallColumn(
   const background = unpackBackground(packed)
   const { coverage, shift } = background
   const still = vec3(0).xy as Vec2
-  const mixed = layer.thickness.mul(fallForm.mixing).min(fallForm.mostMixing)
-  const resolution = resolutionAt(layer, footprint.max(mixed).toConst())
+  const resolution = resolutionAt(layer, footprint)
   const weather = cloudWeather(field, layer, background, subpoint, still, resolution)
   const columns = coverage.mul(share).max(1e-4)
   const rank = cumulative(weather.sum).oneMinus().div(columns).oneMinus().max(-1)

@@ -9,31 +9,17 @@ import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { DIFFRACTED } from '../fallForm'
 import type { SeenPrecipitation } from './marchPrecipitation'
 
-/**
- * Asymmetries without what is only diffracted, 2g − 1: of rain, g = 0.905 by Mie's theory, and of flakes, g = 0.77 (Fu 2007, "A new
- * parameterization of an asymmetry factor of cirrus clouds for climate models", J. Atmos. Sci. 64, pp. 4140–4150).
- */
-const DROPS = 0.81
-const FLAKES = 0.54
+/** Asymmetry of rain without what is only diffracted, g = 0.905 by Mie's theory: 2g − 1. */
+const ASYMMETRY = 0.81
 
-/**
- * Lobes of the same moments, for drops without a phase function, and for flakes and stones: asymmetries, and the first one's share. Flakes
- * scatter much to the side and back: snow is bright with the sun behind one, too.
- */
-const DROP_LOBES = [0.88, -0.1, 0.93] as const
-const FLAKE_LOBES = [0.75, -0.1, 0.753] as const
+/** Lobes of the same moment, for flakes and stones, and for drops without a phase function: asymmetries, and the first one's share. */
+const LOBES = [0.88, -0.1, 0.93] as const
 
 /** Greatest phase function [1/sr]: sharper is only what diffraction makes, which counts as not scattered. */
 const GREATEST = 12
 
 /** Radius of clouds over what falls from them, over the period of their weather: they hide its sky, and it is as wide. */
 export const CLOUD_RADIUS = 0.15
-
-/** Phase function of two lobes [1/sr]. */
-function lobes([g, back, share]: readonly [number, number, number], cosine: Float): Float {
-  const [first, second] = [g, back].map(each => henyeyGreenstein(float(each), cosine))
-  return mix(second, first, share).min(GREATEST).toConst() as Float
-}
 
 /** Clouds above what is seen. */
 export interface CloudsAbove {
@@ -64,13 +50,13 @@ export function lightPrecipitation(
   cast: Float = float(1)
 ): Vec4 {
   const { field, light } = context
-  const { distance, weight, rank, depthToLight, ownDepth, flakes, lit } = seen
+  const { distance, weight, rank, depthToLight, ownDepth, lit } = seen
   const offset = direction.mul(distance).toConst() as Vec3
   const sample: CloudSample = { offset, ...field.view.localCoordinates(offset), distance }
   const source = lightAt(context, sample)
   const cosView = sample.up.dot(direction).clamp(-1, 1).toConst() as Float
   const cosViewLight = direction.dot(source.direction).clamp(-1, 1).toConst() as Float
-  const alike = mix(1 - DROPS, 1 - FLAKES, flakes).div(light.oneMinusAsymmetry)
+  const alike = float(1 - ASYMMETRY).div(light.oneMinusAsymmetry)
   const own = ownDepth.mul(alike).toConst() as Float
   const toLight = depthToLight.add(own).toConst() as Float
   const through = toLight.add(own).toConst() as Float
@@ -87,14 +73,20 @@ export function lightPrecipitation(
   const often = cloudSource(light, nodes).sub(
     singlePhase(light, cosViewLight, toLight).mul(light.scatteringScale).mul(toLight.negate().exp())
   )
+  const [g, back, share] = LOBES
+  const smooth = mix(
+    henyeyGreenstein(float(back), cosViewLight),
+    henyeyGreenstein(float(g), cosViewLight),
+    share
+  ).toConst() as Float
   const angles = { cosViewLight, cosView, cosLight: source.cosine }
   const phase = drops
     ? drops
         .phase(angles)
         .div(1 - DIFFRACTED)
         .min(GREATEST)
-    : vec4(lobes(DROP_LOBES, cosViewLight))
-  const once = phase.mul(lit.x).add(lobes(FLAKE_LOBES, cosViewLight).mul(lit.y))
+    : vec4(smooth)
+  const once = phase.mul(lit.x).add(smooth.min(GREATEST).mul(lit.y))
   const under = cloudAmbientShares(light, {
     depthAbove: depth.mul(rank).add(own),
     depthBelow: own,

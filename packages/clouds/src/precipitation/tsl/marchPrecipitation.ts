@@ -47,8 +47,6 @@ export interface SeenPrecipitation {
   readonly depthToLight: Float
   /** depth of precipitation towards the light, */
   readonly ownDepth: Float
-  /** share of flakes and stones, in [0, 1], */
-  readonly flakes: Float
   /** and direct light that arrives unscattered, over that above the clouds, of drops and of flakes. */
   readonly lit: Vec2
 }
@@ -91,7 +89,7 @@ export function marchPrecipitation(
   const before = vec4(1).toVar() as Variable<Vec4>
   /** Weight, and sums by it: distance, rank, logarithm of the depth to the light. */
   const sums = vec4(0).toVar() as Variable<Vec4>
-  /** Sums of light on drops and on flakes, of the depth of precipitation to the light, and of the share of flakes. */
+  /** Sums of light on drops and on flakes, and of the depth of precipitation to the light. */
   const lights = vec4(0).toVar() as Variable<Vec4>
   If(span.greaterThan(1), () => {
     loop('fallStep', count.toInt(), index => {
@@ -152,7 +150,7 @@ export function marchPrecipitation(
           const flakes = found.y.div(found.x).toConst() as Float
           const ofClouds = clouds.sub(own.mul(mapped)).max(0)
           sums.addAssign(vec4(1, at, found.z.div(found.x), ofClouds.add(1).log()).mul(seen))
-          lights.addAssign(vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), flakes.mul(seen)))
+          lights.addAssign(vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), 0))
         })
         const ahead = points.distances.sub(start).clamp(0, length)
         before.mulAssign(ahead.mul(extinction).negate().exp())
@@ -169,7 +167,6 @@ export function marchPrecipitation(
     rank: sums.z.div(weight).toConst(),
     depthToLight: sums.w.div(weight).exp().sub(1).max(0).toConst(),
     ownDepth: lights.z.div(weight).toConst(),
-    flakes: lights.w.div(weight).toConst(),
     lit: vec2(lights.x, lights.y).toConst()
   }
 }
