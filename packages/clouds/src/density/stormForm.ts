@@ -51,6 +51,16 @@ export const stormShape = {
   least: 0.2
 } as const
 
+/** Ice of storms: towers are of water up to their domes, and anvils thin out towards their rims. */
+export const stormIce = {
+  /** Distances from a tower's axis between which water turns into the ice of its anvil, in radii of that. 0: domes of wool. */
+  aside: [0.5, 1],
+  /** Width of an anvil's thin rim, distance from its axis where it ends, in its radii, and the least root of density there [–]. */
+  rim: 0.4,
+  end: 1.05,
+  least: 0.1
+} as const
+
 /** Fibres of anvils: noise in coordinates about the tower, from which the ice streams outwards. */
 export const stormFibres = {
   /** Periods of the shape's noise in a radian about the tower. More: narrower fibres. */
@@ -61,8 +71,8 @@ export const stormFibres = {
   /** Weights of coarse and fine billows in them [–]. */
   weights: [0.7, 0.7],
   /** Displacement of the rim per unit of them, and at most, in radii of the anvil [–]. 0: a rim like a tower's; greater: loose rags. */
-  fray: 0.06,
-  mostFray: 0.12,
+  fray: 0.1,
+  mostFray: 0.2,
   /** Distances from the anvil's axis within which rims are, in its radii [–]. */
   rim: [0.4, 1.3]
 } as const
@@ -72,7 +82,7 @@ export const stormBillows = {
   /** Length that strength changes by 1 over [periods of the shape]. Smaller: hard edges. */
   unit: 0.02,
   /** Coarse, fine and finest billows [–]: slopes of about 1 make heads that stand on heads. Greater: rags; smaller: balloons. */
-  coarse: 2,
+  coarse: 3,
   fine: 0.8,
   detail: 0.3,
   /** Factor of all of them in ice [–]: anvils are smooth. */
@@ -80,9 +90,9 @@ export const stormBillows = {
   /** Softness of edges in ice: factor of their width less 1 [–]. */
   softIce: 8,
   /** Strength below which billows add nothing to clear air; they fade towards it [–]. Greater: islands float beside storms. */
-  reach: 10,
+  reach: 13,
   /** Strength that is taken off: billows cover more than they clear [–]. Smaller: storms cover more than asked for. */
   offset: 0,
   /** Most that billows and turbulence add to strength in clear air [–]. Smaller: faster, and heads are cut off. */
-  most: 14
+  most: 17
 } as const

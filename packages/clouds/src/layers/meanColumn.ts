@@ -7,7 +7,7 @@ import {
   heightForm,
   strengthForm
 } from '../density/formConstants'
-import { stormBillows } from '../density/stormForm'
+import { stormBillows, stormIce } from '../density/stormForm'
 import { layerForms, layerPeriods, weatherScales } from './layerUniforms'
 import { isStorm, stormBody, stormRadius } from './storms'
 
@@ -58,19 +58,44 @@ export function densityAtHeight(
 export const iceAt = (anvil: number, height: number): number =>
   anvil * MathUtils.smoothstep(height, ...heightForm.iceHeights)
 
-/** Factor of a storm's billows at a height. */
-export const stormRoughness = (
-  { anvil, shapeAmount }: CloudLayerParameters,
-  height: number
-): number => shapeAmount * MathUtils.lerp(1, stormBillows.inIce, iceAt(anvil, height))
+/** Share of ice in a storm at a distance from a tower's axis [m]. */
+export const iceAround = (
+  { anvil }: CloudLayerParameters,
+  height: number,
+  towerDistance: number,
+  radius: number
+): number =>
+  iceAt(anvil, height) *
+  MathUtils.smoothstep(towerDistance / Math.max(radius, 1), ...stormIce.aside)
+
+/** Factor of a storm's billows in a share of ice. */
+export const stormRoughness = ({ shapeAmount }: CloudLayerParameters, ice: number): number =>
+  shapeAmount * MathUtils.lerp(1, stormBillows.inIce, ice)
+
+/** Density of a storm over what its layer has at a height [–]: see density/tsl/stormStrength.ts. Lengths [m]. */
+export function stormDensity(
+  { anvil }: CloudLayerParameters,
+  height: number,
+  ice: number,
+  distance: number,
+  radius: number
+): number {
+  const { rim, end, least } = stormIce
+  const inside = MathUtils.clamp((end - distance / Math.max(radius, 1)) / rim, least, 1)
+  const { iceDensity } = heightForm
+  return (
+    MathUtils.lerp(1, inside ** 2 * iceDensity, ice) /
+    MathUtils.lerp(1, iceDensity, iceAt(anvil, height))
+  )
+}
 
 /** Factor of coarse billows in clear air of a strength [–]. */
 export const stormNearness = (strength: number): number =>
   MathUtils.clamp(1 + strength / stormBillows.reach, 0, 1)
 
-/** Strength over which density rises at a storm's edges [–]. */
-export const stormEdge = (layer: CloudLayerParameters, height: number): number =>
-  layerForms(layer).edge * (1 + stormBillows.softIce * iceAt(layer.anvil, height))
+/** Strength over which density rises at a storm's edges in a share of ice [–]. */
+export const stormEdge = (layer: CloudLayerParameters, ice: number): number =>
+  layerForms(layer).edge * (1 + stormBillows.softIce * ice)
 
 /** Strength of a storm without billows [–]: `smoothStormStrength` of density/tsl/stormStrength.ts. Lengths [m]. */
 export const smoothStormStrength = (
@@ -142,8 +167,14 @@ const diffuse: Passing = {
   depthOf: through => (1 / through - 1) / DIFFUSION
 }
 
-/** Strength of the i-th of a layer's columns at a height, without billows and with one deviation of coarse ones [–]. */
-type Strengths = (i: number, height: number) => { column: number; needed: number; rough: number }
+/**
+ * Strength of the i-th of a layer's columns at a height, without billows, and one deviation of coarse ones; strength over which density
+ * rises at edges, and a factor of that [–].
+ */
+type Strengths = (
+  i: number,
+  height: number
+) => { column: number; needed: number; rough: number; edge: number; crumbs: number }
 
 /** Columns of a layer whose strength is as frequent at any value of a range of `strongest`. */
 function strengthsOf(layer: CloudLayerParameters, coverage: number): Strengths {
@@ -154,7 +185,9 @@ function strengthsOf(layer: CloudLayerParameters, coverage: number): Strengths {
   return (i, height) => {
     const column = least + ((i + 0.5) / COLUMNS) * strongest
     const rough = shapeAmount * billowForm.coarse * topBillows(column)
-    return { column, needed: neededStrength(layer, height), rough }
+    const needed = neededStrength(layer, height)
+    const crumbs = crumbDensity(column, needed)
+    return { column, needed, rough, edge: edgeAt(layer, height), crumbs }
   }
 }
 
@@ -166,8 +199,10 @@ function strengthsOfStorm(layer: CloudLayerParameters, coverage: number): Streng
   return (i, height) => {
     const distance = radius * Math.sqrt(1 - (i + 0.5) / COLUMNS)
     const column = smoothStormStrength(layer, distance, radius, height)
-    const rough = stormRoughness(layer, height) * stormNearness(column) * stormBillows.coarse
-    return { column, needed: 0, rough }
+    const ice = iceAround(layer, height, distance, radius)
+    const rough = stormRoughness(layer, ice) * stormNearness(column) * stormBillows.coarse
+    const crumbs = stormDensity(layer, height, ice, distance, radius)
+    return { column, needed: 0, rough, edge: stormEdge(layer, ice), crumbs }
   }
 }
 
@@ -178,15 +213,12 @@ function columnAt(
   depth: number,
   passing: Passing
 ): { density: number; inside: number } {
-  const storm = isStorm(layer)
-  const strengths = storm ? strengthsOfStorm(layer, coverage) : strengthsOf(layer, coverage)
+  const strengths = (isStorm(layer) ? strengthsOfStorm : strengthsOf)(layer, coverage)
   let through = 0
   let inside = 0
   for (let i = 0; i < COLUMNS; i++) {
     const mean = meanOverHeights(height => {
-      const { column, needed, rough } = strengths(i, height)
-      const edge = storm ? stormEdge(layer, height) : edgeAt(layer, height)
-      const crumbs = storm ? 1 : crumbDensity(column, needed)
+      const { column, needed, rough, edge, crumbs } = strengths(i, height)
       const here = BILLOWS.reduce((part, [deviation, weight]) => {
         const strength = column - needed + rough * deviation
         return part + weight * densityOf(edge, strength, strength) * crumbs

@@ -36,7 +36,7 @@ const congestus: Partial<CloudLayerParameters> = {
 }
 
 const storm: Partial<CloudLayerParameters> = {
-  baseAltitude: 700,
+  baseAltitude: 800,
   topAltitude: 11_000,
   coverage: 0.25,
   density: 0.08,

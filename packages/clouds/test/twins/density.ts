@@ -370,6 +370,7 @@ export function sampleLayer(
     shapeAmount * detailAmount * billowForm.detail * growing(billowForm.fineGrowth) * sign * share
   const storm = weather.storm && {
     ...weather.storm,
+    unfrayed: weather.storm.distance,
     distance: frayedDistance(layer, weather.storm, height, place =>
       decoded(noise.sample('shape', place, level))
     )

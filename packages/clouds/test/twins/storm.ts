@@ -2,8 +2,9 @@ import { MathUtils, Vector3 } from 'three'
 import { stormBillows, stormFibres, stormPlaces, stormShape } from '../../src/density/stormForm'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
 import {
-  iceAt,
+  iceAround,
   smoothStormStrength,
+  stormDensity,
   stormEdge,
   stormNearness,
   stormRoughness
@@ -118,12 +119,12 @@ export interface StormThere extends StormAround {
  */
 export function frayedDistance(
   layer: CloudLayerParameters,
-  { distance, radius, fibrePlace, zenith }: StormThere,
+  { distance, towerDistance, radius, fibrePlace, zenith }: StormThere,
   height: number,
   billowsAt: (place: Vec3Array) => readonly number[]
 ): number {
   const { upwards, weights, fray, mostFray, rim } = stormFibres
-  const ice = iceAt(layer.anvil, height)
+  const ice = iceAround(layer, height, towerDistance, radius)
   const inRadii = distance / Math.max(radius, 1)
   if (ice === 0 || inRadii <= rim[0] || inRadii >= rim[1]) return distance
   const rise = height * (layer.topAltitude - layer.baseAltitude)
@@ -136,7 +137,12 @@ export function frayedDistance(
 /** Float64 twin of `stormStrength`. */
 export function stormStrength(
   layer: CloudLayerParameters,
-  { distance, towerDistance, radius }: { distance: number; towerDistance: number; radius: number },
+  {
+    distance,
+    towerDistance,
+    radius,
+    unfrayed = distance
+  }: { distance: number; towerDistance: number; radius: number; unfrayed?: number },
   coarse: number,
   fine: number,
   height: number
@@ -147,14 +153,15 @@ export function stormStrength(
   edge: number
   crumbs: number
 } {
-  const amount = stormRoughness(layer, height)
+  const ice = iceAround(layer, height, towerDistance, radius)
+  const amount = stormRoughness(layer, ice)
   const smooth = smoothStormStrength(layer, distance, radius, height, towerDistance)
   const body = smooth + amount * stormNearness(smooth) * stormBillows.coarse * coarse
   return {
     body,
     strength: body + amount * stormBillows.fine * fine,
     detail: amount * layer.detailAmount * stormBillows.detail,
-    edge: stormEdge(layer, height),
-    crumbs: 1
+    edge: stormEdge(layer, ice),
+    crumbs: stormDensity(layer, height, ice, 2 * distance - unfrayed, radius)
   }
 }

@@ -45,6 +45,10 @@ export const likelyDistance = (layer: LayerNodes, strength: Float): Float => {
   return strength.negate().max(0).mul(perStrength).div(layer.perShapePeriod)
 }
 
+/** Greatest likely distance of storms that were looked at [m]. */
+export const nearStorms = (layer: LayerNodes): Float =>
+  float(stormBillows.most * LIKELY_OF_STORMS).div(layer.perShapePeriod)
+
 /**
  * Strength that billows add to clear air, in nearly all places, and what anvils add: they spread from column to
  * column, and so no background rules them out [–]. Smaller: faster, and small clouds are missed in clear
@@ -119,7 +123,7 @@ export function clearOfStorms(
   keepStorm(nearby, stormNearby(layer, subpoint, zenith, around.shift, radius))
   const still = vec2(0) as Vec2
   const weather = cloudWeather(field, layer, around, subpoint, still, resolution, nearby)
-  const fray = radius.mul(iceAt(layer, height)).mul(stormFibres.mostFray)
+  const fray = weather.stormRadius.mul(iceAt(layer, height)).mul(stormFibres.mostFray)
   const stormDistance = weather.stormDistance.sub(fray)
   const clear = smoothStormStrength(layer, { ...weather, stormDistance }, height)
     .negate()

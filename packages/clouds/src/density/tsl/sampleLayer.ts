@@ -54,7 +54,7 @@ interface Body {
   readonly detailStrength: Float
   /** Strength over which density rises at edges [–]. */
   readonly edge: Float
-  /** Factor of the density: `crumbDensity`. */
+  /** Factor of the density: `crumbDensity`, or `StormStrength.density`. */
   readonly crumbs: Float
 }
 
@@ -91,6 +91,7 @@ function bodyAt(
       strength.assign(storm.strength)
       detailStrength.assign(storm.detail)
       edge.assign(storm.edge)
+      crumbs.assign(storm.density)
     },
     () => {
       const amount = billowStrength(layer, height)

@@ -1,7 +1,7 @@
-import { If, float, mix, vec2, vec4 } from 'three/tsl'
+import { If, bool, float, mix, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { WeatherMap } from '../WeatherMap'
-import type { Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import type { Bool, Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { componentAt } from './componentAt'
 import { densityAtHeight } from './heightForm'
 import { forLayersUnrolled, heightIn, isWithin, layerAt, type LayerRange } from './layer'
@@ -10,12 +10,13 @@ import {
   clearOfStorms,
   likelyDistance,
   likelyDistanceByBackground,
+  nearStorms,
   NOWHERE
 } from './likelyDistance'
 import { footprintOf, type CloudSample } from './sample'
 import { sampleLayerAt } from './sampleLayer'
 import { backgroundAt } from './sampler'
-import { ifStorm } from './storm'
+import { ifStorm, isStorm } from './storm'
 import { keptStorm } from './stormNearby'
 
 /** Two samples of all clouds near each other. */
@@ -24,6 +25,8 @@ export interface SamplePair {
   readonly extinction: Vec2
   /** Distance from either in which there is likely no cloud; 0 in clouds [m]. */
   readonly likelyDistance: Float
+  /** True where storms are so near that they were looked at. */
+  readonly isNear: Bool
   /** Greatest extinction that clouds have at their height [1/m]. */
   readonly greatest: Float
 }
@@ -60,6 +63,7 @@ export function samplePair(
   const places = [-0.5, 0.5].map(at => sampleNearby(middle, direction, length.mul(at)))
   const sum = vec2(0).toVar() as Vec2
   const nearest = float(NOWHERE).toVar()
+  const isNear = bool(false).toVar()
   const greatest = float(0).toVar()
   const end = middle.distance.add(length.mul(0.5)).toConst()
   const isAlone = field.layers.length === 1
@@ -94,6 +98,8 @@ export function samplePair(
         const strongest = first.strength.max(second.strength)
         likely.assign(likelyDistance(layer, strongest).mul(field.skipping))
         sum.addAssign(vec2(first.extinction, second.extinction))
+        greatest.assign(greatest.max(first.extinction).max(second.extinction))
+        if (layer.hasStorms !== false) isNear.assign(isNear.or(isStorm(layer)))
       })
       if (!isAlone) {
         const until = end.add(likely.mul(CAUTION)).mul(likely.sign())
@@ -101,9 +107,13 @@ export function samplePair(
       }
       nearest.assign(nearest.min(likely))
     }).ElseIf(isHere, () => {
-      nearest.assign(nearest.min(clearUntil.sub(end)))
+      const left = clearUntil.sub(end).toConst() as Float
+      nearest.assign(nearest.min(left))
+      if (layer.hasStorms !== false) {
+        isNear.assign(isNear.or(isStorm(layer).and(left.lessThan(nearStorms(layer)))))
+      }
     })
   }
   forLayersUnrolled(field, look, range)
-  return { extinction: sum, likelyDistance: nearest, greatest }
+  return { extinction: sum, likelyDistance: nearest, isNear, greatest }
 }

@@ -3,7 +3,6 @@ import type { CloudField } from '../CloudField'
 import { stormFibres } from '../stormForm'
 import type { Float, Vec3 } from '../../tsl-types'
 import { decoded } from './billows'
-import { iceAt } from './heightForm'
 import type { LayerNodes } from './layer'
 
 // Fibres at the rims of anvils, which noise at a place cannot make: they are in coordinates of their storm.
@@ -43,17 +42,18 @@ export function fibrePlace(axis: Vec3, fromTower: Vec3, zenith: Vec3, cell: Floa
  * Distance from the axis of a storm's anvil with the fibres of its rim [m]: ice streams outwards from the tower and sinks. One
  * texture read near rims, none elsewhere. Twin: `frayedDistance` in test/twins/storm.ts
  *
+ * @param ice - Share of ice there.
  * @param level - `Resolution.shapeLevel`.
  */
 export function frayedDistance(
   field: CloudField,
   layer: LayerNodes,
   { stormDistance, stormRadius, fibrePlace, fibreZenith }: AnvilAround,
+  ice: Float,
   height: Float,
   level: Float
 ): Float {
   const { upwards, weights, fray, mostFray, rim } = stormFibres
-  const ice = iceAt(layer, height)
   const distance = stormDistance.toVar() as Float
   const inRadii = stormDistance.div(stormRadius.max(1)).toConst()
   If(ice.greaterThan(0).and(inRadii.greaterThan(rim[0])).and(inRadii.lessThan(rim[1])), () => {

@@ -1,5 +1,7 @@
+import { smoothstep } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import { stormBillows } from '../stormForm'
+import { stormBillows, stormIce } from '../stormForm'
+import { heightForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
 import type { Billows } from './billows'
 import { iceAt } from './heightForm'
@@ -17,6 +19,8 @@ export interface StormStrength {
   readonly detail: Float
   /** Strength over which density rises at the edge [–]. */
   readonly edge: Float
+  /** Factor of the density that clouds have at the height [–]. */
+  readonly density: Float
 }
 
 /** Strength of a storm without billows [–]: its distance into the body. */
@@ -34,6 +38,21 @@ export const smoothStormStrength = (
     .sub(layer.shapeAmount.mul(stormBillows.offset))
     .toConst()
 
+/**
+ * Density of a storm over what its layer has at a height [–]: that of water by its tower, and less and less ice towards the anvil's
+ * rim.
+ *
+ * @param all - `iceAt`.
+ * @param ice - Share of ice there.
+ * @param inRadii - Distance from the anvil's axis, in its radii.
+ */
+function stormDensity(all: Float, ice: Float, inRadii: Float): Float {
+  const { rim, end, least } = stormIce
+  const inside = inRadii.negate().add(end).div(rim).clamp(least, 1).toConst() as Float
+  const ofHeight = all.mix(1, heightForm.iceDensity)
+  return ice.mix(1, inside.mul(inside).mul(heightForm.iceDensity)).div(ofHeight).toConst()
+}
+
 /** Strength of a storm: its surface with billows that stand out as far to all sides, and fibres at the anvil's rim. Twin: test/twins/storm.ts */
 export function stormStrength(
   field: CloudField,
@@ -44,9 +63,12 @@ export function stormStrength(
   level: Float
 ): StormStrength {
   const { coarse, fine, detail, inIce, softIce, reach } = stormBillows
-  const ice = iceAt(layer, height)
+  const all = iceAt(layer, height)
+  const perRadius = weather.stormRadius.max(1).reciprocal().toConst() as Float
+  const aside = smoothstep(...stormIce.aside, weather.towerDistance.mul(perRadius))
+  const ice = all.mul(aside).toConst() as Float
   const amount = ice.mix(1, inIce).mul(layer.shapeAmount).toConst() as Float
-  const stormDistance = frayedDistance(field, layer, weather, height, level)
+  const stormDistance = frayedDistance(field, layer, weather, ice, height, level)
   const smooth = smoothStormStrength(layer, { ...weather, stormDistance }, height)
   // Bulges of the surface, not clouds beside it.
   const near = smooth.div(reach).add(1).clamp(0, 1)
@@ -55,6 +77,8 @@ export function stormStrength(
     body,
     strength: body.add(billows.fine.mul(amount).mul(fine)).toConst(),
     detail: amount.mul(layer.detailAmount).mul(detail).toConst(),
-    edge: ice.mul(softIce).add(1).div(layer.perEdge).toConst()
+    edge: ice.mul(softIce).add(1).div(layer.perEdge).toConst(),
+    // Fibres reach as far again in the thin rim as in its edge.
+    density: stormDensity(all, ice, stormDistance.mul(2).sub(weather.stormDistance).mul(perRadius))
   }
 }
