@@ -109,15 +109,9 @@ export function cloudAmbientShares(
   const sky = at(uv, cosView)
   // The same slab seen from below.
   const ground = at(vec2(uv.x.oneMinus(), uv.y), cosView.negate().toConst())
-  const [high, low] = [depthAbove, depthBelow].map(depth => depth.max(0).toConst() as Float)
-  const slope = high.add(low).mul(-fit.decay).exp().mul(fit.thinSlope).add(fit.slope)
-  const logit = low
-    .add(fit.face)
-    .div(high.add(fit.face))
-    .log()
-    .mul(fit.power)
-    .add(slope.mul(cosView))
-  const share = logit.negate().exp().add(1).reciprocal()
+  const [open, shut] = [depthAbove, depthBelow].map(depth => depth.max(0).mul(-fit.decay).exp())
+  const slope = open.add(shut).mul(fit.thinSlope).add(fit.slope)
+  const share = open.sub(shut).mul(fit.tops).add(slope.mul(cosView)).add(0.5)
   const both = sky.add(ground).toConst()
   const skyShare = mix(sky, both.mul(share), layered.oneMinus().mul(resolved)).toConst()
   return { sky: skyShare, ground: both.sub(skyShare).toConst() }

@@ -1,11 +1,10 @@
 import { horizontalIrradiance, transmittanceToLight } from '@welkin/atmosphere'
 import { If, float, mix } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
-import type { CloudSample } from '../../density/tsl/sample'
+import { footprintOf, type CloudSample } from '../../density/tsl/sample'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { lateralLeakFit as fit } from '../cpu/lateralLeak'
 import { cloudAmbientShares, cloudSource } from './cloudLight'
-import type { Chord } from './lateralLeak'
 import { localDepths } from './localDepths'
 import { isNight, nightShare } from './night'
 import type { ShadedSample, ShadingContext, ShadingLight } from './shadingContext'
@@ -53,7 +52,10 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
   const depthBehind = seen.div(past.max(LEAST_TRANSMITTANCE)).log().max(0).toConst() as Float
   const depthAbove = depths.above.mul(scale).toConst() as Float
   const depthBelow = depths.below.mul(scale).toConst() as Float
-  const { resolved } = depths
+  const { top, base } = shaded.layers
+  // Clouds are about as wide as their layer is thick.
+  const width = footprintOf(context.field, sample).div(top.sub(base).max(1))
+  const resolved = width.oneMinus().clamp().toConst() as Float
   const height = source.cosine.abs()
   const unresolved = height.mul(fit.unresolvedDiameterHigh).add(fit.unresolvedDiameter)
   const lit = {
@@ -66,7 +68,7 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     cosView,
     cosViewLight,
     viewChord: [depthToCamera, depthBehind] as const,
-    verticalChord: [depths.chord[0].mul(scale), depths.chord[1].mul(scale)] as Chord,
+    verticalChord: [depthAbove, depthBelow] as const,
     resolved: mix(fit.unresolvedChords, 1, resolved) as Float
   }
   const direct = cloudSource(light, lit)

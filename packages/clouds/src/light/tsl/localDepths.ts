@@ -1,9 +1,8 @@
-import { float, int, mix, smoothstep, vec4 } from 'three/tsl'
+import { float, int, smoothstep, vec4 } from 'three/tsl'
 import { footprintOf } from '../../density/tsl/sample'
 import { extinctionNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
-import type { Chord } from './lateralLeak'
 import type { ShadedSample, ShadingContext, ShadingLight } from './shadingContext'
 
 /** Cosine of the lowest light whose rays grow longer with its height. */
@@ -30,24 +29,10 @@ const LOW_LIGHT_STEPS = 2
 const FEWEST_STEPS = 2
 
 /**
- * Distances at which the cloud above and below is probed, as parts of the way to the layer's top and base, and their
- * width, as a part of the layer's thickness. Narrower: probes meet holes and bumps that tell nothing of the cloud. The chord
- * of the lateral leak, decks and unresolved clouds have a sharp probe above, at `SHARP_ABOVE`.
+ * Height at which the cloud above is probed, as a part of the way to the top. Higher: towers count as
+ * shallow, too bright from the sky (*Storm*).
  */
-const VERTICAL = 0.15
-const VERTICAL_WIDTH = 0.09
-const SHARP_ABOVE = 0.35
-
-/**
- * Mean extinction of an isolated cloud to its layer's top or base: parts of that near the place and of the probed one; and
- * of a deck. Tops lie below their layer's, bases at it. From single clouds of a large-eddy simulation, as is the weight of the shadow map's depths, which grows with the light's height.
- */
-const ISOLATED_ABOVE = [0.03, 0.31] as const
-const ISOLATED_BELOW = [0.03, 0.4] as const
-const DECK_MEAN = [0.175, 0.5] as const
-const DECK_BELOW = 0.7
-const MAPPED = 0.8
-const MAPPED_POWER = 3
+const ABOVE = 0.35
 
 /**
  * Widest isolated clouds, over their layer's thickness: low light crosses no more of one where no shadow map is [–].
@@ -55,19 +40,20 @@ const MAPPED_POWER = 3
  */
 const WIDEST = 1.5
 
+/**
+ * Mean extinction below a place of an isolated cloud, as a part of its own; twice as much in decks. Faces lean
+ * over air: 0.35 is what single clouds of a large-eddy simulation have.
+ */
+const BELOW = 0.35
+
 /** Optical depths around a sample, not delta-scaled. */
 export interface LocalDepths {
   /** Depth from the sample to the light. */
   toLight: Float
   /** Optical depth of all clouds on the ray of light through the sample. */
   through: Float
-  /** Depths to the top and to the base, which share the light of sky and ground. */
   above: Float
   below: Float
-  /** Chord of the cloud along the vertical: deeper in isolated clouds, as `lateralLeakFit` knows it. */
-  chord: Chord
-  /** 1 where clouds are resolved one by one, 0 where not. */
-  resolved: Float
 }
 
 /**
@@ -90,43 +76,31 @@ export function localDepths(
     .max(lowness.mul(LOW_LIGHT_PROBED))
     .min(toTop)
     .toConst() as Float
-  /** Extinction near the sample, optical depth towards the light, extinction above and below. */
+  /** Extinction at the sample, optical depth towards the light, extinction above. */
   const found = vec4(0).toVar() as Vec4
-  const sharpAbove = float(0).toVar() as Float
-  // Clouds are about as wide as their layer is thick.
-  const resolved = footprintOf(field, sample)
-    .div(top.sub(base).max(1))
-    .oneMinus()
-    .clamp()
-    .toConst() as Float
-  // What is narrower than that is left out, as from afar.
-  const width = rise.add(fall).mul(VERTICAL_WIDTH)
-  const afar = sample.distance.max(width.div(field.pixelAngle.max(1e-6))).toConst() as Float
   const asked = float(quality.lightSteps).add(lowness.mul(LOW_LIGHT_STEPS).ceil())
   // Steps shorter than a pixel see nothing more.
   const seen = probed.div(footprintOf(field, sample).max(1e-3)).ceil().max(FEWEST_STEPS)
   const count = asked.min(seen).toInt().toConst() as Int
-  // The density function is inlined once for all directions: shaders stay short.
-  loop('probe', count.add(int(3)), index => {
-    const isAside = index.greaterThanEqual(count).toConst()
-    const isSharp = index.equal(count).toConst()
-    const isAbove = index.equal(count.add(int(1))).toConst()
+  // The density function is inlined once for both directions: shaders stay short.
+  loop('probe', count.add(int(1)), index => {
+    const isUpwards = index.equal(count).toConst()
     // Steps grow from the sample on: (i/n)² of the way.
     const from = float(index).div(float(count)).toConst() as Float
     const to = float(index).add(1).div(float(count)).toConst() as Float
     const [start, end] = [from.mul(from).mul(probed), to.mul(to).mul(probed)]
-    const wide = isAbove.select(rise, fall.negate()).mul(VERTICAL)
-    const height = isSharp.select(rise.mul(SHARP_ABOVE), wide)
-    const step = toLight.mul(start.add(end).mul(0.5))
-    const offset = sample.offset.add(isAside.select(sample.up.mul(height), step)).toConst() as Vec3
+    const middle = isUpwards.select(rise.mul(ABOVE), start.add(end).mul(0.5)).toConst() as Float
+    const direction = isUpwards.select(sample.up, toLight) as Vec3
+    const offset = sample.offset.add(direction.mul(middle)).toConst() as Vec3
     const { altitude, up } = field.view.localCoordinates(offset)
-    const distance = isAside.and(isSharp.not()).select(afar, sample.distance).toConst() as Float
+    const { distance } = sample
     const extinction = extinctionNearby(field, weather, { offset, altitude, up, distance })
-    const isFirst = index.equal(int(0))
-    const along = vec4(isFirst.select(extinction, 0), extinction.mul(end.sub(start)), 0, 0)
-    const aside = isAbove.select(vec4(0, 0, extinction, 0), vec4(0, 0, 0, extinction))
-    sharpAbove.addAssign(isSharp.select(extinction, 0))
-    found.addAssign(isAside.select(isSharp.select(vec4(0), aside), along))
+    found.addAssign(
+      isUpwards.select(
+        vec4(0, 0, extinction, 0),
+        vec4(index.equal(int(0)).select(extinction, 0), extinction.mul(end.sub(start)), 0, 0)
+      )
+    )
   })
   const beyond = sample.offset.add(toLight.mul(probed)).toConst() as Vec3
   const far = sampleShadows(shadows, beyond)
@@ -145,25 +119,7 @@ export function localDepths(
     .add(depthToLight.add(behind).mul(unmapped))
     .max(depthToLight)
     .toConst() as Float
-  const deckAbove = rise.mul(found.x.mul(DECK_MEAN[0]).add(sharpAbove.mul(DECK_MEAN[1]))).toConst()
-  const deckBelow = fall.mul(found.x).mul(DECK_BELOW).toConst() as Float
-  const ownAbove = rise.mul(found.x.mul(ISOLATED_ABOVE[0]).add(found.z.mul(ISOLATED_ABOVE[1])))
-  const ownBelow = fall.mul(found.x.mul(ISOLATED_BELOW[0]).add(found.w.mul(ISOLATED_BELOW[1])))
-  // The shadow map knows the whole depths; the higher the light, the more are they the vertical's.
-  const known = cosLight.abs().pow(MAPPED_POWER).mul(MAPPED).mul(unmapped.oneMinus()).toConst()
-  const lit = depthToLight.mul(cosLight.abs()).toConst() as Float
-  const shaded = through.sub(depthToLight).mul(cosLight.abs()).toConst() as Float
-  const isHigh = cosLight.greaterThan(0)
-  const chord = [deckAbove, deckBelow.mul(layered.add(1).div(2)).toConst() as Float] as const
-  const own = layered.oneMinus().mul(resolved).toConst() as Float
-  const combined = (deck: Float, guess: Float, mapped: Float): Float =>
-    mix(deck, mapped.mul(known).add(guess).div(known.add(1)), own).toConst()
-  return {
-    resolved,
-    toLight: depthToLight,
-    through,
-    above: combined(chord[0], ownAbove, isHigh.select(lit, shaded)),
-    below: combined(chord[1], ownBelow, isHigh.select(shaded, lit)),
-    chord
-  }
+  const above = rise.mul(found.x.mul(ABOVE / 2).add(found.z.mul(0.5)))
+  const below = fall.mul(found.x).mul(layered.add(1).mul(BELOW))
+  return { toLight: depthToLight, through, above, below }
 }
