@@ -33,8 +33,8 @@ import { writeTiles } from './tiles/writeTiles'
 /** Least height of the viewer above the ground that distances count from [m]. */
 const LEAST_CLEARANCE = 0.5
 
-/** Depth of skirts where no page is missing [cells]: only rounding is hidden. */
-const SHALLOW = 0.1
+/** Depth of skirts where no page is missing [cells]: only rounding is hidden. With their width, steeper than all made-up ground. */
+const SHALLOW = 1
 
 /** Height of "no ceiling", above all ground [m]. */
 const NO_CEILING = 1e9

@@ -1,4 +1,4 @@
-import { attribute, ivec2, mix, positionGeometry, texture, vec2, vec3, vec4 } from 'three/tsl'
+import { attribute, ivec2, mix, positionGeometry, step, texture, vec2, vec3, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
 import type { PageAtlas } from '../../pages/PageAtlas'
 import type { TerrainUniforms } from '../../TerrainUniforms'
@@ -12,6 +12,12 @@ export const morphStart = (detail: number): number => (detail + 1) / (2 * detail
 
 /** Distance within which the ceiling holds; beyond, it rises by as much as distance does [cells]. */
 const CLOSE = 3
+
+/**
+ * Width of skirts, which lean outwards under the ground of the neighbour [cells]. Less: between two tiles a ray along their edge sees
+ * the gap that rounding leaves, which is a part of a pixel wide. Greater: they stand out of ground steeper than they are.
+ */
+const SKIRT_WIDTH = 0.4
 
 /** Depth of skirts that are deeper than a cell, at most [m]. */
 const DEEPEST_SKIRT = 2e4
@@ -90,7 +96,9 @@ export function tileVertex(
   ).toConst('mixed') as Vec3
 
   const moved = mix(cells, even, morph).toConst('moved') as Vec2
-  const delta = alongCube(moved)
+  const isOutside = positionGeometry.z as unknown as Float
+  const outwards = step(vec2(resolution - 0.5), cells).sub(step(cells, vec2(0.5)))
+  const delta = alongCube(moved.add(outwards.mul(isOutside.mul(SKIRT_WIDTH))))
   const subpoint = fromCenter(delta)
   const cell = extent.mul(radii.x).mul(2 / resolution)
   // Vertices of the triangle under the viewer are within three cells, morphed or not.
@@ -98,7 +106,7 @@ export function tileVertex(
   const height = mixed.x.min(ceiling.add(room)).max(seaLevel)
   const up = figure.upOfCube(cube.add(delta), stretch).toConst('up') as Vec3
   const tilt = figure.turnOfUp(cube, delta, stretch)
-  const skirt = positionGeometry.z.mul(cell.mul(skirtScale).min(cell.max(DEEPEST_SKIRT)))
+  const skirt = isOutside.mul(cell.mul(skirtScale).min(cell.max(DEEPEST_SKIRT)))
   const position = base.xyz
     .add(subpoint)
     .add(tilt.mul(groundHeight))
