@@ -163,7 +163,7 @@ class World {
     this.#clouds.time = 0
     shafts.add(cloudAirShadow(this.#clouds))
     this.#cloudEnvironment = cloudEnvironment(this.#clouds, { size: 16, quality: coarse })
-    this.#environment = skyEnvironment(atmosphere, { overlay: this.#cloudEnvironment, size: 64 })
+    this.#environment = skyEnvironment(atmosphere, { overlay: this.#cloudEnvironment, size: 256 })
     this.scene.environmentNode = this.#environment
     this.#addLights()
     this.#addThings(isMapped ? [] : this.pictures.slice(3))

@@ -9,7 +9,7 @@ const meta: Meta<RealHeightsArgs> = {
   title: 'Real heights',
   render: mount(
     createRealHeights,
-    storyCode(['realHeights.scene.ts', 'heights']),
+    storyCode(['realHeights.scene.ts', 'heights'], ['realHeights.scene.ts', 'GeoTIFF']),
     ({ url }: RealHeightsArgs) => url
   ),
   argTypes: {

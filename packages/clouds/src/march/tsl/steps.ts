@@ -23,8 +23,8 @@ const LEAST_STEPS = 4
 const CLEAR_GROWTH = 4
 
 /**
- * The same near storms, whose heads on heads are smaller than such steps from afar. Greater: heads are missed by whole rows of
- * pixels, as dashes in towers 30 km away (*Storm*); smaller: slower.
+ * Steps through clear air near storms over those in clouds that grow with the distance. Greater: heads, which are smaller than that
+ * from afar, are missed by whole rows of pixels, as dashes in towers 30 km away (*Storm*). Smaller: slower.
  */
 const NEAR_GROWTH = 1.5
 
