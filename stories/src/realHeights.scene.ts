@@ -151,11 +151,11 @@ async function openGeoTIFF(url: string): Promise<Given> {
   // #shown const url = 'heights.tif'
   const file = await fromUrl(url)
   const image = await file.getImage()
-  const heights = await heightsFromGeoTIFF(image, { outside: 0 })
+  const measured = await heightsFromGeoTIFF(image, { outside: 0 })
   // #endregion
   const [west, south, east, north] = image.getBoundingBox()
   const middle = { longitude: (west + east) / 2, latitude: (south + north) / 2 }
-  return { heights, middle, note: new URL(url, document.baseURI).pathname }
+  return { heights: measured, middle, note: new URL(url, document.baseURI).pathname }
 }
 
 /** Heights of the arguments. */
