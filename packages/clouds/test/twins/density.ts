@@ -229,17 +229,15 @@ export function weatherAt(
       (region[2] + scaleWeights.regionCells * region[0] + scaleWeights.regionBands * region[3]) +
     scales.planet * frontsAndBelts(zenithThere, waves, region, cyclone)
   const radius = stormRadius(layer, background, coverage, scales.clouds[2])
+  const placeInFields = placeIn(subpointInLayer, latticeRotations.fields, fieldPeriod)
   const storm = isStorm(layer)
     ? stormAround(
         layer,
-        shifted(
-          placeIn(subpointInLayer, latticeRotations.fields, fieldPeriod),
-          bend,
-          1 / fieldPeriod
-        ),
+        shifted(placeInFields, bend, 1 / fieldPeriod),
         zenith.clone().applyQuaternion(ownRotation).applyQuaternion(latticeRotations.fields),
         lean.clone().applyQuaternion(ownRotation).applyQuaternion(latticeRotations.fields),
-        radius
+        radius,
+        shifted(placeInFields, shift.toArray(), 1 / fieldPeriod)
       )
     : undefined
   const single = storm

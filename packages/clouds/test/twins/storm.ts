@@ -78,16 +78,20 @@ export interface StormAround {
  * anvil's rank.
  *
  * @param downwind - Direction that columns lean to, in the lattice, of any length.
+ * @param still - The place without turbulence, where the nearest are looked for.
  */
 export function stormAround(
   layer: CloudLayerParameters,
   place: Vec3Array,
   up: Vector3,
   downwind = new Vector3(),
-  radius = 0
+  radius = 0,
+  still = place
 ): StormAround {
   const aside = downwind.clone().setLength(stormAside(layer, radius) / stormCell(layer))
-  const { anvil, tower } = stormGaps(place, up, aside)
+  const turned = still.map((value, axis) => (value - place[axis]) * stormPlaces.cells)
+  const found = stormGaps(still, up, aside)
+  const [anvil, tower] = [found.anvil, found.tower].map(gap => gap.add(new Vector3(...turned)))
   const cells = axisDistance(anvil, up)
   const { scale, power } = stormPlaces
   const towerDistance = axisDistance(tower, up) * stormCell(layer)

@@ -55,13 +55,13 @@ const asidePerShear = ({ anvil, thickness }: LayerNodes, shear: Float, radius: F
 
 /** A place among storms, in their lattice [cells]. */
 interface PlaceAmongStorms {
+  /** In the lattice's periods. */
+  readonly place: Vec3
   readonly at: Vec3
   /** Zenith there. */
   readonly zenith: Vec3
   /** Displacement from a storm's tower to the middle of its anvil, horizontal. */
   readonly downwind: Vec3
-  /** Displacements to the nearest storms; looked for when it is called. */
-  readonly search: () => StormGaps
 }
 
 /** See `stormAround`. */
@@ -77,8 +77,7 @@ function placeAmongStorms(
   const lean = layer.shearAxis.cross(up).toConst() as Vec3
   const aside = asidePerShear(layer, lean.length(), radius).mul(stormPlaces.cells)
   const downwind = layer.displacementInFields(lean).mul(aside).toConst() as Vec3
-  const search = (): StormGaps => stormGaps(place, zenith, downwind)
-  return { at: place.mul(stormPlaces.cells).toConst(), zenith, downwind, search }
+  return { place, at: place.mul(stormPlaces.cells).toConst(), zenith, downwind }
 }
 
 /**
@@ -93,8 +92,8 @@ export function stormNearby(
   shift: Vec2,
   radius: Float
 ): StormNearby {
-  const { at, search } = placeAmongStorms(layer, subpoint, up, shift, radius)
-  const { anvil, tower } = search()
+  const { place, at, zenith, downwind } = placeAmongStorms(layer, subpoint, up, shift, radius)
+  const { anvil, tower } = stormGaps(place, zenith, downwind)
   return { anvil: at.add(anvil), tower: at.add(tower) }
 }
 
@@ -106,7 +105,7 @@ export function stormNearby(
  * @param up - Zenith there, in the mapped space.
  * @param bent - Displacement of the look-up along two axes of the lattice [m].
  * @param radius - `stormRadius` [m].
- * @param nearby - The nearest storms, if they are known; left out, they are looked for.
+ * @param nearby - The nearest storms: `stormNearby`.
  */
 export function stormAround(
   layer: LayerNodes,
@@ -114,11 +113,11 @@ export function stormAround(
   up: Vec3,
   bent: Vec2,
   radius: Float,
-  nearby?: StormNearby
+  nearby: StormNearby
 ): StormAround {
   const { scale, power } = stormPlaces
-  const { at, zenith, downwind, search } = placeAmongStorms(layer, subpoint, up, bent, radius)
-  const found = nearby ? { anvil: nearby.anvil.sub(at), tower: nearby.tower.sub(at) } : search()
+  const { at, zenith, downwind } = placeAmongStorms(layer, subpoint, up, bent, radius)
+  const found: StormGaps = { anvil: nearby.anvil.sub(at), tower: nearby.tower.sub(at) }
   const cells = squareFrom(found.anvil.toConst(), zenith).sqrt().toConst() as Float
   const toTower = found.tower.sub(downwind).toConst() as Vec3
   const length = cellLength(layer)

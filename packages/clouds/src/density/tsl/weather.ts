@@ -6,7 +6,7 @@ import { cumulative } from '../../noise/tsl/noiseChannels'
 import { inLattice, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, zenithAt, type CloudSample } from './sample'
-import { ifStorm, stormAround } from './storm'
+import { ifStorm, stormAround, stormNearby } from './storm'
 import { stormRadius, type StormNearby } from './stormNearby'
 import { unpackBackground, weatherBackground, type WeatherBackground } from './weatherBackground'
 
@@ -81,7 +81,9 @@ export function cloudWeather(
     layer,
     () => {
       radius.assign(stormRadiusIn(layer, background))
-      const storm = stormAround(layer, subpoint, zenithAt(field, subpoint), bent, radius, nearby)
+      const zenith = zenithAt(field, subpoint)
+      const found = nearby ?? stormNearby(layer, subpoint, zenith, background.shift, radius)
+      const storm = stormAround(layer, subpoint, zenith, bent, radius, found)
       stormDistance.assign(storm.distance)
       towerDistance.assign(storm.towerDistance)
       fibrePlace.assign(storm.fibrePlace)
