@@ -14,7 +14,7 @@ const SIDE = 10
 /** Cameras about a place: pages are shared by them. */
 const PER_PLACE = 20
 
-/** Every so manyth place has pages missing, so many of which are drawn for a camera. */
+/** Every fourth place has pages missing, so many of which are drawn for a camera. */
 const HASTY = 4
 const FEW_PAGES = 6
 
@@ -174,7 +174,7 @@ class CrackHunt {
 /**
  * Looks for cracks from random cameras.
  *
- * @param count - Number of cameras, a multiple of 100.
+ * @param count - Number of cameras, a multiple of 20.
  * @param most - Time after which it ends [s].
  */
 export async function findCracks(

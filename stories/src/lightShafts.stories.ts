@@ -59,7 +59,7 @@ type Story = StoryObj<LightShaftsArgs>
 /** Jacob's ladder: rays that fan out from the gaps of a deck. */
 export const Deck: Story = { name: 'Below a broken deck', tags: ['screenshot'] }
 
-/** Rays and the shadow of a ridge in the fog of the valley behind it, the sun 9° up. */
+/** Rays between the shadows of spruces on a ridge, in the fog of the valley before it, the sun 9° up. */
 export const Ridge: Story = {
   name: 'Ridge at sunrise',
   args: argsOf('ridge'),

@@ -1,5 +1,6 @@
 import { Atmosphere, heightFog } from '@welkin/atmosphere'
 import { cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import type { CloudsNode } from '@welkin/clouds'
 import { MountainHeights, Terrain, terrainView } from '@welkin/terrain'
 import { PerspectiveCamera, Scene } from 'three'
 import { shadow } from 'three/tsl'
@@ -130,11 +131,12 @@ export async function createTerrain(
   scene.add(terrain)
   // #endregion
   prepareShadow(air.sun)
+  let cloudsNode: CloudsNode | undefined
   if (args.clouds && air.post !== undefined) {
     const { color, depth, pipeline } = air.post
     const layers = cloudPreset('fairWeather')
     layers.at(0).set(CLOUDS)
-    const node = clouds(color, depth, camera, atmosphere, layers)
+    const node = (cloudsNode = clouds(color, depth, camera, atmosphere, layers))
     pipeline.outputNode = node
     Object.assign(air.sun.shadow, { shadowNode: cloudShadow(node, shadow(air.sun)) })
     cloudSkyLight(air.sky, node)
@@ -180,6 +182,9 @@ export async function createTerrain(
       // A still is planted at once.
       plants?.update(camera, args.frame ? 0 : performance.now() / 1000, args.frame ? Infinity : 3)
     },
-    dispose: () => setPlants(false)
+    dispose() {
+      setPlants(false)
+      cloudsNode?.dispose()
+    }
   })
 }

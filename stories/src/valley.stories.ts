@@ -131,7 +131,7 @@ export const Day: Story = { name: 'A day', tags: ['screenshot'] }
 /** Mist over the lake before the sun is over the mountains. */
 export const Morning: Story = { args: { hour: 5, weather: 'mist', view: 'slope', dayLength: 1800 } }
 
-/** The sun sets among broken clouds. */
+/** The sun is low among broken clouds. */
 export const Evening: Story = {
   args: { hour: 18.4, weather: 'broken', view: 'shore', dayLength: 1800 }
 }

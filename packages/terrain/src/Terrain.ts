@@ -33,7 +33,7 @@ import { writeTiles } from './tiles/writeTiles'
 /** Least height of the viewer above the ground that distances count from [m]. */
 const LEAST_CLEARANCE = 0.5
 
-/** Depth of skirts where no page is missing [cells]: only rounding is hidden. With their width, steeper than all made-up ground. */
+/** Depth of skirts where no page is missing [cells]: only rounding is hidden. With their width they slope by 68°, more than made-up ground does. */
 const SHALLOW = 1
 
 /** Height of "no ceiling", above all ground [m]. */

@@ -7,6 +7,7 @@ import { groundSharesAt } from '../src/surface/groundSharesAt'
 import type { Terrain } from '../src/Terrain'
 
 const place = {
+  height: 800,
   overSea: 800,
   patch: 0,
   climate: 0,
@@ -24,9 +25,11 @@ it('has woods in wet country and grass in dry, rock on cliffs, snow on summits, 
   expect(most({ climate: 0.2 })).toBe('grass')
   expect(most({ climate: 1 })).toBe('desert')
   expect(most({ cosSlope: 0.7, sinNormal: Math.sin(0.8 - 0.8) })).toBe('rock')
-  expect(most({ overSea: 2800 })).toBe('scree')
-  expect(most({ overSea: 4500 })).toBe('snow')
-  expect(most({ overSea: 0.5 })).toBe('sand')
+  expect(most({ height: 2800, overSea: 2800 })).toBe('scree')
+  expect(most({ height: 4500, overSea: 4500 })).toBe('snow')
+  expect(most({ height: 0.5, overSea: 0.5 })).toBe('sand')
+  // Without a sea.
+  expect(most({ climate: 0.2, overSea: Infinity })).toBe('grass')
 })
 
 it('has shares with a sum of 1 at any place of a terrain', () => {
@@ -47,4 +50,6 @@ it('has shares with a sum of 1 at any place of a terrain', () => {
 
 it('says what is wrong', () => {
   expect(() => groundSharesAt({} as Terrain, new Vector3())).toThrow(/groundSharesAt.*terrain/)
+  const terrain = { atmosphere: {}, source: {} } as unknown as Terrain
+  expect(() => groundSharesAt(terrain, new Vector3(NaN))).toThrow(/groundSharesAt.*position.*NaN/)
 })

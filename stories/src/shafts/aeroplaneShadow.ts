@@ -9,14 +9,14 @@ const SUN = 0.00465
 const FROM = [150, 400] as const
 
 /**
- * Parts of an airliner as boxes in the plane of its wings: middle ahead of the window and aside, half lengths along and across [m], and how
+ * Parts of an airliner as boxes in the plane of its wings: middle ahead of the window, half lengths along and across [m], and how
  * far the part is swept back over its half width [–].
  */
 const PARTS = [
-  [0, 0, 19, 2, 0],
-  [-1, 0, 3, 17, 0.45],
-  [-17, 0, 1.6, 6, 0.45],
-  [-17, 0, 2, 0.3, 0]
+  [0, 19, 2, 0],
+  [-1, 3, 17, 0.45],
+  [-17, 1.6, 6, 0.45],
+  [-17, 2, 0.3, 0]
 ] as const
 
 /**
@@ -40,9 +40,9 @@ export const aeroplaneShadow = (): AirOccluder => ({
         const inside = (place: Node<'float'>, half: Node<'float'>): Node<'float'> =>
           smoothstep(blur.negate(), blur, half.sub(place.abs()))
         let covered: Node<'float'> = float(0)
-        for (const [ahead, across, length, width, sweep] of PARTS) {
-          const out = aside.div(height).sub(across)
-          const back = forward.sub(ahead).add(out.abs().mul(sweep))
+        for (const [middle, length, width, sweep] of PARTS) {
+          const out = aside.div(height)
+          const back = forward.sub(middle).add(out.abs().mul(sweep))
           // A fuselage is as high as it is wide, wings are flat.
           const half = sweep === 0 ? float(width) : height.mul(width)
           const part = inside(back, float(length)).mul(inside(aside, half))

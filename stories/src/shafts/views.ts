@@ -40,7 +40,7 @@ export const shaftViews = {
   ridge: {
     label: 'Ridge at sunrise',
     about:
-      'the sun between spruces on a ridge, 8° up: rays between their shadows fan out from there in the valley fog',
+      'the sun between spruces on a ridge, 9° up: rays between their shadows fan out from there in the valley fog',
     fog: { density: 0.004, falloff: 70 },
     turbidity: 3,
     light: { elevation: 8.6, azimuth: 152 },

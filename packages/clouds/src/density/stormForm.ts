@@ -53,11 +53,13 @@ export const stormShape = {
 
 /** Ice of storms: towers are of water up to their domes, and anvils thin out towards their rims. */
 export const stormIce = {
-  /** Distances from a tower's axis between which water turns into the ice of its anvil, in radii of that. 0: domes of wool. */
+  /** Distances from a tower's axis between which water turns into the ice of its anvil, in radii of that anvil. 0: domes of wool. */
   aside: [0.5, 1],
-  /** Width of an anvil's thin rim, distance from its axis where it ends, in its radii, and the least root of density there [–]. */
+  /** Width of an anvil's thin rim, in its radii [–]. 0: its edge is a cliff (*Storm*). */
   rim: 0.4,
+  /** Distance from the anvil's axis where the rim ends, in its radii [–]. Less: fibres are cut off there (*Storm*). */
   end: 1.05,
+  /** Least square root of the rim's density [–]. 0: fibres beyond its end are not seen (*Storm*). */
   least: 0.1
 } as const
 

@@ -39,7 +39,7 @@ const albedo = (): Vec3 => (diffuseColor as unknown as { rgb: Vec3 }).rgb
 /** Part of three's builder that is used. */
 interface LightsBuilder {
   readonly environmentNode: unknown
-  readonly material: { readonly envNode: unknown }
+  readonly material: { readonly envNode: unknown; readonly envMap: unknown }
   readonly lightsNode: {
     getLightNodes(builder: NodeBuilder): unknown
     setupLights(builder: NodeBuilder, nodes: unknown): void
@@ -71,7 +71,7 @@ class GroundLightingModel extends PhysicalLightingModel {
 
   override start(builder: NodeBuilder): void {
     const { environmentNode, material, lightsNode } = builder as unknown as LightsBuilder
-    this.#mirrors = Boolean(environmentNode || material.envNode)
+    this.#mirrors = Boolean(environmentNode || material.envNode || material.envMap)
     this.#sunlight = vec3(0).toVar('sunlightOnGround') as unknown as Variable
     if (this.#mirrors) {
       super.start(builder)

@@ -7,7 +7,7 @@ import { figureOf, poleOf, worldToGround } from '../tiles/cpu/figure'
 import { groundShares, type SharesOnCPU } from './cpu/groundRules'
 import { CLIMATE, PATCHES } from './cpu/surfaceNoise'
 
-/** Shares of materials of the ground at a place, with a sum of 1. */
+/** Shares of materials of the ground at a place [–], each in [0, 1], with a sum of 1. */
 export interface GroundShares extends SharesOnCPU {
   /** Noise about 0, from 4 km to 64 m, by which one material gives way to another. */
   readonly patch: number
@@ -27,7 +27,8 @@ const sum = { x: 0, y: 0, z: 0, value: 0 }
  *
  * @param terrain - Ground, with heights that the CPU knows.
  * @param position - Above or below the place, world [units].
- * @returns Shares of `rock`, `scree`, `grass`, `forest`, `sand` (at the shore), `desert` and `snow`; land below the sea is sand.
+ * @returns Shares of `rock`, `scree`, `grass`, `forest`, `sand` (at the shore), `desert` and `snow`; below the sea it is sand,
+ *   but for rock on steep slopes and snow near the poles.
  * @throws If a component of the position is not finite, or the terrain is none.
  */
 export function groundSharesAt(terrain: Terrain, position: Vector3): GroundShares {
@@ -50,6 +51,6 @@ export function groundSharesAt(terrain: Terrain, position: Vector3): GroundShare
   const sinLatitude = up.dot(pole)
   const sinNormal = (sinLatitude - gradient.dot(pole)) * cosSlope
   const overSea = height - seaLevel
-  const shares = groundShares({ overSea, patch, climate, sinLatitude, sinNormal, cosSlope })
+  const shares = groundShares({ height, overSea, patch, climate, sinLatitude, sinNormal, cosSlope })
   return { ...shares, patch, climate }
 }

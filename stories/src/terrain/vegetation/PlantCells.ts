@@ -23,7 +23,7 @@ export interface GroundCell {
 export interface PlantCellsOptions {
   /** Side of a cell [m]. */
   readonly side: number
-  /** Cells along an edge of their square. */
+  /** Cells along an edge of their square, an even number. */
   readonly count: number
   /** Most plants in a cell. */
   readonly most: number

@@ -1,5 +1,5 @@
 import type { Terrain } from '@welkin/terrain'
-import type { Mesh } from 'three'
+import type { BufferGeometry, Mesh } from 'three'
 import { Group, MathUtils, Matrix4, Vector3, type Camera } from 'three'
 import type { NodeMaterial, WebGPURenderer } from 'three/webgpu'
 import { branchedSpruce, leafyTree } from '../../valley/treeShapes'
@@ -97,7 +97,12 @@ export class Vegetation extends Group {
   readonly #terrain: Terrain
   readonly #uniforms = plantUniforms()
   readonly #cells: PlantCells[]
-  readonly #trees: { cells: PlantCells; near: NearTrees; pictures: TreePictures }[]
+  readonly #trees: {
+    cells: PlantCells
+    near: NearTrees
+    pictures: TreePictures
+    shape: BufferGeometry
+  }[]
   readonly #viewer = new Vector3()
   readonly #chosenAt = new Vector3(Infinity, 0, 0)
   readonly #toFrame = new Matrix4()
@@ -118,7 +123,7 @@ export class Vegetation extends Group {
       const branches = new NearTrees(shape, cells, uniforms, BRANCHES)
       const pictures = drawPictures(renderer, shape)
       this.add(branches, createImpostors(pictures, cells, uniforms, BRANCHES, TREES_GO))
-      return { cells, near: branches, pictures }
+      return { cells, near: branches, pictures, shape }
     })
     this.#cells = [near, flowers, far, ...this.#trees.map(({ cells }) => cells)]
     this.matrixAutoUpdate = false
@@ -169,7 +174,8 @@ export class Vegetation extends Group {
 
   /** Frees geometries, materials and pictures; terrain and renderer are shared. */
   override dispose(): void {
-    for (const { pictures } of this.#trees) {
+    for (const { pictures, shape } of this.#trees) {
+      shape.dispose()
       pictures.color.dispose()
       pictures.normal.dispose()
     }

@@ -20,7 +20,7 @@ import {
   type Vec3
 } from './plantShader'
 
-/** Colours of blades, linear sRGB: those of the ground's grass, and of its straw. */
+/** Colours of blades, linear sRGB: near those of the ground's grass, and of its straw. */
 const GREEN = [0.05, 0.098, 0.021] as const
 const STRAW = [0.225, 0.19, 0.085] as const
 

@@ -1,4 +1,5 @@
 import {
+  Color,
   DoubleSide,
   HalfFloatType,
   LinearFilter,
@@ -80,12 +81,17 @@ export function drawPictures(renderer: WebGPURenderer, geometry: BufferGeometry)
   const before = renderer.getRenderTarget()
   const { autoClear } = renderer
   const alpha = renderer.getClearAlpha()
-  renderer.setClearAlpha(0)
+  const clear = renderer.getClearColor(new Color())
+  renderer.setClearColor(0, 0)
+  renderer.autoClear = false
   for (const [into, material] of [
     [pictures.color, colors],
     [pictures.normal, normals]
   ] as const) {
     mesh.material = material
+    // All sides at once: WebGL clears within the scissor alone.
+    renderer.setRenderTarget(into)
+    renderer.clear()
     for (let side = 0; side < SIDES; side++) {
       const angle = (2 * Math.PI * side) / SIDES
       camera.position.set(20 * Math.sin(angle), 0, 20 * Math.cos(angle))
@@ -95,12 +101,11 @@ export function drawPictures(renderer: WebGPURenderer, geometry: BufferGeometry)
       into.scissor.set(side * WIDTH, 0, WIDTH, HEIGHT)
       into.scissorTest = true
       renderer.setRenderTarget(into)
-      renderer.autoClear = side === 0
       renderer.render(scene, camera)
     }
   }
   renderer.autoClear = autoClear
-  renderer.setClearAlpha(alpha)
+  renderer.setClearColor(clear, alpha)
   renderer.setRenderTarget(before)
   colors.dispose()
   normals.dispose()

@@ -2,7 +2,8 @@ import type { OfKinds } from '../maps/groundKinds'
 
 /** A place of the ground, for float64. */
 export interface PlaceOnCPU {
-  /** Height of the ground over the sea [m]. */
+  /** Height of the ground over the ellipsoid, and over the sea [m]. */
+  readonly height: number
   readonly overSea: number
   /** Patchiness and climate, noise about 0. */
   readonly patch: number
@@ -24,11 +25,11 @@ function smoothstep(start: number, end: number, value: number): number {
 
 /** Shares of the ground's materials on open ground, without stones and blades. Twin of ../tsl/groundRules.ts and groundShares.ts. */
 export function groundShares(place: PlaceOnCPU): SharesOnCPU {
-  const { overSea, patch, climate, sinLatitude, sinNormal, cosSlope } = place
+  const { height, overSea, patch, climate, sinLatitude, sinNormal, cosSlope } = place
   const square = sinLatitude ** 2
   const sunny = (sinLatitude - sinNormal) * Math.sign(sinLatitude)
   const snowLine = 5200 - 2000 * square - 3600 * square ** 2 + 500 * climate + 350 * sunny
-  const overSnow = overSea - snowLine
+  const overSnow = height - snowLine
   const overTrees = overSnow + 1100 + 350 * patch
   const subtropical =
     smoothstep(0.12, 0.4, Math.abs(sinLatitude)) *

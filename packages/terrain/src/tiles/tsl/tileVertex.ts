@@ -96,9 +96,9 @@ export function tileVertex(
   ).toConst('mixed') as Vec3
 
   const moved = mix(cells, even, morph).toConst('moved') as Vec2
-  const isOutside = positionGeometry.z as unknown as Float
+  const skirtShare = positionGeometry.z as unknown as Float
   const outwards = step(vec2(resolution - 0.5), cells).sub(step(cells, vec2(0.5)))
-  const delta = alongCube(moved.add(outwards.mul(isOutside.mul(SKIRT_WIDTH))))
+  const delta = alongCube(moved.add(outwards.mul(skirtShare.mul(SKIRT_WIDTH))))
   const subpoint = fromCenter(delta)
   const cell = extent.mul(radii.x).mul(2 / resolution)
   // Vertices of the triangle under the viewer are within three cells, morphed or not.
@@ -106,7 +106,7 @@ export function tileVertex(
   const height = mixed.x.min(ceiling.add(room)).max(seaLevel)
   const up = figure.upOfCube(cube.add(delta), stretch).toConst('up') as Vec3
   const tilt = figure.turnOfUp(cube, delta, stretch)
-  const skirt = isOutside.mul(cell.mul(skirtScale).min(cell.max(DEEPEST_SKIRT)))
+  const skirt = skirtShare.mul(cell.mul(skirtScale).min(cell.max(DEEPEST_SKIRT)))
   const position = base.xyz
     .add(subpoint)
     .add(tilt.mul(groundHeight))
