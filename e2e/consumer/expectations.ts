@@ -72,7 +72,8 @@ const fibersClock = /THREE\.Clock: This module has been deprecated/
 export const expectations: Record<string, Expectation> = {
   index: { wrongWith: checkQuickStart },
   clouds: { wrongWith: checkClouds },
-  fiber: { wrongWith: checkQuickStart, allows: fibersClock },
+  // React makes the renderer; what that does without WebGPU the index shows.
+  fiber: { wrongWith: checkQuickStart, backends: ['webgpu'], allows: fibersClock },
   fiberClouds: { wrongWith: checkClouds, backends: ['webgpu'], allows: fibersClock },
   webpack: { wrongWith: checkQuickStart, backends: ['webgpu'] },
   geo: {

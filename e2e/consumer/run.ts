@@ -17,6 +17,8 @@ import { writeReadmeModules } from './readme'
 const root = fileURLToPath(new URL('../..', import.meta.url))
 const template = fileURLToPath(new URL('app', import.meta.url))
 const report = new Report()
+/** Longest that a page may take: clouds under React take some 60 s alone, and thrice that on a slow, busy machine. */
+const limitSeconds = 400
 
 /** Runs npm, or a command of the app's, and answers with its standard output. */
 function execute(command: string, args: string[], cwd: string): string {
@@ -160,8 +162,8 @@ async function look(browser: Browser, origin: string, name: string, backend: Bac
     }
     await page.addInitScript(noteCanvas)
     await page.goto(`${origin}/${name}.html`)
-    await page.waitForSelector('canvas', { state: 'attached', timeout: 60_000 })
-    const { png, first } = await withLimit(firstFrame(page, wrongWith), 120)
+    await page.waitForSelector('canvas', { state: 'attached', timeout: 120_000 })
+    const { png, first } = await withLimit(firstFrame(page, wrongWith), limitSeconds)
     note = `first frame ${seconds(first.time)} from navigation`
     if (first.age !== undefined) note += `, ${seconds(first.age)} from the renderer's creation`
     const wrong = wrongWith(png)

@@ -12,7 +12,7 @@ import { startStorybook, testLink } from './link'
 const viewport = { width: 160, height: 90 }
 /** Room for the buttons beside the fingers. */
 const touchViewport = { width: 240, height: 220 }
-const limitSeconds = 120
+const limitSeconds = 300
 /** Storybook's pages are compiled as they are asked for, and the valley is drawn in software. */
 const linkLimitSeconds = 500
 const stories = fileURLToPath(new URL('../../stories/src/plain.stories.ts', import.meta.url))
@@ -26,7 +26,7 @@ async function until(
   page: Page,
   isRight: (view: ExplorerState) => boolean
 ): Promise<ExplorerState> {
-  const end = performance.now() + 10_000
+  const end = performance.now() + 30_000
   for (;;) {
     const view = await look(page)
     if (isRight(view)) return view
@@ -47,7 +47,7 @@ async function atRest(page: Page): Promise<ExplorerState> {
 
 /** Waits until the address has another view than before. */
 async function addressAfter(page: Page, before: string): Promise<string> {
-  await page.waitForFunction(url => location.href !== url, before, { timeout: 10_000 })
+  await page.waitForFunction(url => location.href !== url, before, { timeout: 30_000 })
   // What moved has come to rest, and the address with it.
   await page.waitForTimeout(1200)
   return page.url()

@@ -55,7 +55,7 @@ export function gpuTest(
   }
   current.tests.push({
     backends: ['webgpu', 'webgl'],
-    timeoutSeconds: 180,
+    timeoutSeconds: 360,
     bakes: false,
     ...options,
     name,
