@@ -144,8 +144,7 @@ export const Night: Story = {
 
 /** Showers over the valley at noon in autumn, and their bow before the mountains. */
 export const Shower: Story = {
-  args: { hour: 12.3, date: Date.UTC(2026, 10, 1), weather: 'shower', dayLength: 1800 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { hour: 12.3, date: Date.UTC(2026, 10, 1), weather: 'shower', dayLength: 1800 }
 }
 
 /** Snowfall in winter: the ground whitens. */
