@@ -1,6 +1,7 @@
 import { Matrix4, Vector3 } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import type { LightShaftsQuality } from '@welkin/atmosphere'
+import type { Backend } from '../../harness/backend'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { addBox, stage, type Stage } from '../harness/shaft-stage'
@@ -110,17 +111,25 @@ async function displacement(
   return (stepOf(profile) - expected) * perPixel
 }
 
-for (const quality of ['medium', 'high'] as const satisfies LightShaftsQuality[]) {
-  gpuTest(`has edges of shafts where a half-plane has them, at ${quality} quality`, async t => {
-    const renderer = await t.createRenderer(size)
-    const displaced: number[] = []
-    for (const view of VIEWS) {
-      displaced.push(await displacement(renderer, quality, ELEVATION, view))
-    }
-    t.note(displaced.map(degrees => `${degrees.toFixed(3)}°`).join(', '))
-    const most = Math.max(...displaced.map(Math.abs))
-    expectTrue(most <= GOAL, `edges are displaced by ${most.toFixed(3)}°`)
-  })
+for (const [quality, backends] of [
+  ['medium', ['webgpu', 'webgl']],
+  // Other numbers in the shaders that medium quality has drawn on both.
+  ['high', ['webgpu']]
+] as const satisfies [LightShaftsQuality, Backend[]][]) {
+  gpuTest(
+    `has edges of shafts where a half-plane has them, at ${quality} quality`,
+    async t => {
+      const renderer = await t.createRenderer(size)
+      const displaced: number[] = []
+      for (const view of VIEWS) {
+        displaced.push(await displacement(renderer, quality, ELEVATION, view))
+      }
+      t.note(displaced.map(degrees => `${degrees.toFixed(3)}°`).join(', '))
+      const most = Math.max(...displaced.map(Math.abs))
+      expectTrue(most <= GOAL, `edges are displaced by ${most.toFixed(3)}°`)
+    },
+    { backends }
+  )
 }
 
 gpuTest('has rays opposite a sunset run together at the point opposite the sun', async t => {

@@ -257,7 +257,9 @@ gpuTest('takes from the air of a shell what it takes from the sky', async t => {
       transmittance: () => place => place.positionWorld().x.greaterThan(0).select(0, 1)
     })
   }
-  for (const [distance, pitch] of VIEWS) {
+  // Outside the air and in it; WebGPU also comes close to it from outside.
+  const views = t.backend === 'webgpu' ? VIEWS : [VIEWS[0], VIEWS[2]]
+  for (const [distance, pitch] of views) {
     const camera = cameraAt(distance, air.bottomRadius, pitch)
     const shafts = lightShafts(atmosphere, camera, light).add(occluder)
     const sky = new Scene()
