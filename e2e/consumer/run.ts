@@ -17,7 +17,7 @@ import { writeReadmeModules } from './readme'
 const root = fileURLToPath(new URL('../..', import.meta.url))
 const template = fileURLToPath(new URL('app', import.meta.url))
 const report = new Report()
-/** Longest that a page may take: clouds under React take some 60 s alone, and thrice that on a slow, busy machine. */
+/** Longest that a page may take: at half the speed, beside another step, clouds under React take more than 120 s [s]. */
 const limitSeconds = 400
 
 /** Runs npm, or a command of the app's, and answers with its standard output. */
