@@ -1,3 +1,14 @@
+import {
+  DRYNESS,
+  MOIST,
+  ROCK,
+  SCREE,
+  SHORE,
+  SNOW,
+  SNOW_LINE,
+  TREES,
+  WOODS
+} from '../groundConstants'
 import type { OfKinds } from '../maps/groundKinds'
 
 /** A place of the ground, for float64. */
@@ -28,26 +39,34 @@ export function groundShares(place: PlaceOnCPU): SharesOnCPU {
   const { height, overSea, patch, climate, sinLatitude, sinNormal, cosSlope } = place
   const square = sinLatitude ** 2
   const sunny = (sinLatitude - sinNormal) * Math.sign(sinLatitude)
-  const snowLine = 5200 - 2000 * square - 3600 * square ** 2 + 500 * climate + 350 * sunny
+  const { equator, square: bySquare, fourth, dry, sunny: bySun } = SNOW_LINE
+  const snowLine =
+    equator - bySquare * square - fourth * square ** 2 + dry * climate + bySun * sunny
   const overSnow = height - snowLine
-  const overTrees = overSnow + 1100 + 350 * patch
+  const overTrees = overSnow + TREES.below + TREES.patch * patch
+  const latitude = Math.abs(sinLatitude)
   const subtropical =
-    smoothstep(0.12, 0.4, Math.abs(sinLatitude)) *
-    (1 - smoothstep(0.42, 0.62, Math.abs(sinLatitude)))
-  const dryness = Math.min(Math.max(1.1 * subtropical - 0.35 + 1.4 * climate, 0), 1)
-  const steepness = 1 - cosSlope + 0.05 * patch
-  const lowland = 1 - smoothstep(60, 420, overSea)
-  const moisture = patch - dryness - 1.4 * climate - 0.15 - 0.4 * lowland
+    smoothstep(...DRYNESS.begins, latitude) * (1 - smoothstep(...DRYNESS.ends, latitude))
+  const dryness = Math.min(
+    Math.max(DRYNESS.belts * subtropical + DRYNESS.least + DRYNESS.climate * climate, 0),
+    1
+  )
+  const steepness = 1 - cosSlope + ROCK.patch * patch
+  const lowland = 1 - smoothstep(...WOODS.lowland.over, overSea)
+  const moisture =
+    patch - dryness - WOODS.climate * climate - WOODS.open - WOODS.lowland.dry * lowland
   const layers = {
-    snow: smoothstep(-150, 250, overSnow + 420 * patch) * (1 - smoothstep(0.26, 0.42, steepness)),
-    rock: smoothstep(0.13, 0.24, steepness),
-    sand: 1 - smoothstep(2, 9, overSea + 4 * patch),
-    scree: smoothstep(-50, 450, overTrees),
+    snow:
+      smoothstep(...SNOW.over, overSnow + SNOW.patch * patch) *
+      (1 - smoothstep(...SNOW.steepness, steepness)),
+    rock: smoothstep(...ROCK.steepness, steepness),
+    sand: 1 - smoothstep(...SHORE.over, overSea + SHORE.patch * patch),
+    scree: smoothstep(...SCREE, overTrees),
     desert: dryness,
     forest:
-      smoothstep(-0.2, 0, moisture) *
-      (1 - smoothstep(-150, 50, overTrees)) *
-      smoothstep(15, 60, overSea)
+      smoothstep(-MOIST, 0, moisture) *
+      (1 - smoothstep(...TREES.end, overTrees)) *
+      smoothstep(...TREES.overSea, overSea)
   }
   const shares = { snow: 0, rock: 0, sand: 0, scree: 0, desert: 0, forest: 0, grass: 0 }
   let left = 1

@@ -1,5 +1,16 @@
 import { float, smoothstep } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
+import {
+  DRYNESS,
+  MOIST,
+  ROCK,
+  SCREE,
+  SHORE,
+  SNOW,
+  SNOW_LINE,
+  TREES,
+  WOODS
+} from '../groundConstants'
 import type { OfKinds } from '../maps/groundKinds'
 import type { Grain, GrainPlace } from './grain'
 
@@ -7,22 +18,9 @@ import type { Grain, GrainPlace } from './grain'
 const SPREAD = 0.12
 const MOST_SPREAD = 450
 
-/** Share of the climate in where woods grow: fewer of them where it is dry [–]. Less: land from orbit is of one colour (*Terrain*). */
-const DRY_WOODS = 1.4
-
-/** Part of the patches that is open where it is neither wet nor dry, over half of them [–]. */
-const OPEN = 0.15
-
-/** Moisture that land just above the sea lacks, and heights over it between which it does [m]: open plains below woods. */
-const LOWLAND = { dry: 0.4, from: 60, to: 420 }
-
 /** Deviation of patches, and size of a pixel that shows none of them: a share of it is woods then [m]. */
 const PATCH_DEVIATION = 0.35
 const PATCHES_GONE = 4000
-
-/** Height by which snow lies higher where it is dry, per climate, and on slopes to the equator, per slope [m]. */
-const DRY_SNOW = 500
-const SUNNY_SNOW = 350
 
 /** Height by which snow lies lower in hollows that see nothing of the sky [m], and slope by which more soil holds there. */
 const HOLLOW_SNOW = 700
@@ -85,25 +83,29 @@ export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimat
   const sinLatitude = northing.abs().toConst('sinLatitude')
   const overSea = height.sub(seaLevel).toConst('overSea') as Float
 
-  // Snow lies above 5,200 m at the equator, 3,100 m in the Alps, 1,700 m at 60°, and at sea level near the poles.
   const square = sinLatitude.mul(sinLatitude).toConst('square')
   // Ground that falls towards the equator has a normal nearer to it than up is.
   const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign()) as unknown as Float
-  const snowLine = float(5200)
-    .sub(square.mul(square.mul(3600).add(2000)))
-    .add(climate.mul(DRY_SNOW))
-    .add(sunny.mul(SUNNY_SNOW))
+  const snowLine = float(SNOW_LINE.equator)
+    .sub(square.mul(square.mul(SNOW_LINE.fourth).add(SNOW_LINE.square)))
+    .add(climate.mul(SNOW_LINE.dry))
+    .add(sunny.mul(SNOW_LINE.sunny))
     .toConst('snowLine')
   const overSnow = height.sub(snowLine).toConst('overSnow') as Float
-  const overTrees = overSnow.add(1100).add(patch.mul(350)).toConst('overTrees') as Float
-  const dryness = smoothstep(0.12, 0.4, sinLatitude)
-    .mul(smoothstep(0.42, 0.62, sinLatitude).oneMinus())
-    .mul(1.1)
-    .sub(0.35)
-    .add(climate.mul(1.4))
+  const overTrees = overSnow
+    .add(TREES.below)
+    .add(patch.mul(TREES.patch))
+    .toConst('overTrees') as Float
+  const dryness = smoothstep(...DRYNESS.begins, sinLatitude)
+    .mul(smoothstep(...DRYNESS.ends, sinLatitude).oneMinus())
+    .mul(DRYNESS.belts)
+    .add(DRYNESS.least)
+    .add(climate.mul(DRYNESS.climate))
     .clamp(0, 1)
     .toConst('dryness') as Float
-  const lowland = smoothstep(LOWLAND.from, LOWLAND.to, overSea).oneMinus().toConst('lowland')
+  const lowland = smoothstep(...WOODS.lowland.over, overSea)
+    .oneMinus()
+    .toConst('lowland')
   return { overSea, overSnow, overTrees, sunny, dryness, lowland }
 }
 
@@ -120,7 +122,7 @@ export function groundRules(
   const relief = stone.mul(0.6).add(boulder.mul(0.5)).add(crown.mul(0.6)).toConst('relief')
   const steepness = cosSlope
     .oneMinus()
-    .add(patch.mul(0.05))
+    .add(patch.mul(ROCK.patch))
     .add(relief.mul(0.03))
     .sub(hollow.mul(HOLLOW_SOIL))
     .toConst('steepness')
@@ -128,36 +130,37 @@ export function groundRules(
   const lost = grain.footprint.div(PATCHES_GONE).min(1).mul(PATCH_DEVIATION).toConst()
   const moisture = patch
     .sub(dryness)
-    .sub(climate.mul(DRY_WOODS))
-    .sub(OPEN)
-    .sub(lowland.mul(LOWLAND.dry))
+    .sub(climate.mul(WOODS.climate))
+    .sub(WOODS.open)
+    .sub(lowland.mul(WOODS.lowland.dry))
     .toConst()
   const woods = smoothstep(
-    lost.add(0.2).negate(),
+    lost.add(MOIST).negate(),
     lost,
     moisture.add(tuft.mul(0.12)).add(crown.mul(0.3))
   )
-    .mul(smoothstep(-150, 50, overTrees).oneMinus())
+    .mul(smoothstep(...TREES.end, overTrees).oneMinus())
     // As with beaches: a pixel that shows much ground shows what lies behind the shore.
-    .mul(smoothstep(15, 60, overSea.add(spread)))
+    .mul(smoothstep(...TREES.overSea, overSea.add(spread)))
     .toConst('woods')
   // Stones come through grass where they are highest.
   const bareness = smoothstep(
-    spread.add(50).negate(),
-    spread.add(450),
+    spread.negate().add(SCREE[0]),
+    spread.add(SCREE[1]),
     overTrees.add(relief.mul(260))
   ).toConst('bareness')
   // A pixel as large as a beach is mostly of what lies behind it.
-  const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief).add(spread)).toConst(
-    'inland'
-  )
-  const bare = smoothstep(0.13, 0.24, steepness).toConst('bare')
+  const inland = smoothstep(
+    ...SHORE.over,
+    overSea.add(patch.mul(SHORE.patch)).add(relief).add(spread)
+  ).toConst('inland')
+  const bare = smoothstep(...ROCK.steepness, steepness).toConst('bare')
   const snow = smoothstep(
-    spread.add(150).negate(),
-    spread.add(250),
-    overSnow.add(patch.mul(420)).add(hollow.mul(HOLLOW_SNOW)).sub(relief.mul(160))
+    spread.negate().add(SNOW.over[0]),
+    spread.add(SNOW.over[1]),
+    overSnow.add(patch.mul(SNOW.patch)).add(hollow.mul(HOLLOW_SNOW)).sub(relief.mul(160))
   )
-    .mul(smoothstep(0.26, 0.42, steepness).oneMinus())
+    .mul(smoothstep(...SNOW.steepness, steepness).oneMinus())
     .toConst('snow')
   const layers = { snow, bare, inland, bareness, dryness, woods }
   return { layers, relief, spread }
