@@ -19,6 +19,13 @@ const PER_PLACE = 20
 const HASTY = 5
 const FEW_PAGES = 6
 
+/**
+ * Longest edge of a triangle over its distance: a tile is no nearer than one and a half of its diagonals, which are twelve cells long. Where pages
+ * are missing it may be longer; no more than so from afar, where it counts.
+ */
+const LONGEST_EDGE = 1 / 18
+const LONGEST_HASTY = 4 / 18
+
 /** Pages drawn for a camera over the made-up planet, each of which costs as much as the camera's picture. */
 const COSTLY_PAGES = 24
 
@@ -49,6 +56,8 @@ type GroundName = 'waves' | 'mountains'
 interface Shot {
   readonly camera: PerspectiveCamera
   readonly place: Pick<Crack, 'longitude' | 'latitude' | 'height'>
+  /** Longest edge of a triangle over its distance. */
+  edge: number
 }
 
 const degrees = (radians: number): number => (radians * 180) / Math.PI
@@ -124,7 +133,7 @@ class CrackHunt {
         latitude: Math.min(Math.max(latitude + aside * (random() - 0.5), -90), 90),
         height
       }
-      this.#shoot({ camera: this.#cameraAt(place), place }, pages)
+      this.#shoot({ camera: this.#cameraAt(place), place, edge: LONGEST_EDGE }, pages)
       if (this.#shots.length === SIDE * SIDE) await this.#read()
     }
   }
@@ -151,6 +160,7 @@ class CrackHunt {
     const n = this.#shots.push(shot) - 1
     nextFrame()
     this.#terrain.update(renderer, shot.camera, pages)
+    if (!this.#terrain.isFull) shot.edge = LONGEST_HASTY
     const [x, y] = [(n % SIDE) * WIDTH, Math.floor(n / SIDE) * HEIGHT]
     target.viewport.set(x, y, WIDTH, HEIGHT)
     target.scissor.set(x, y, WIDTH, HEIGHT)
@@ -184,7 +194,7 @@ class CrackHunt {
     const stride = data.length / (SIDE * HEIGHT) / 4
     const { radii } = this.#atmosphere.ellipsoid.grown(this.#heights.lowest)
     const [right, up, forward, ray] = [0, 1, 2, 3].map(() => new Vector3())
-    for (const [n, { camera, place }] of shots.entries()) {
+    for (const [n, { camera, place, edge }] of shots.entries()) {
       const [left, top] = [(n % SIDE) * WIDTH, Math.floor(n / SIDE) * HEIGHT]
       // Where the lowest ground is the unit sphere.
       camera.matrixWorld.extractBasis(right, up, forward)
@@ -193,7 +203,9 @@ class CrackHunt {
       up.multiplyScalar(tangent).divide(radii)
       forward.divide(radii)
       const position = camera.position.clone().divide(radii)
-      const over = position.lengthSq() - 1
+      // The horizon of a globe of triangles lies deeper, by their sagitta.
+      const sagitta = (edge * edge * (position.lengthSq() - 1)) / 8
+      const over = position.lengthSq() - (1 - sagitta) ** 2
       let pixels = 0
       for (let y = 0; y < HEIGHT; y++) {
         for (let x = 0; x < WIDTH; x++) {
@@ -219,7 +231,7 @@ class CrackHunt {
 }
 
 /**
- * Looks for cracks from random cameras: the first tenth over the made-up planet, the others over rough waves.
+ * Looks for cracks from random cameras: the first half over the made-up planet, the others over rough waves.
  *
  * @param count - Number of cameras, a multiple of 200.
  * @param most - Time after which it ends [s].
@@ -235,8 +247,8 @@ export async function findCracks(
   const seconds = (): number => (performance.now() - start) / 1000
   const sum = { cameras: 0, pixels: 0, cracks: [] as Crack[] }
   for (const [ground, part, until] of [
-    ['mountains', 0.1, 0.3 * most],
-    ['waves', 0.9, most]
+    ['mountains', 0.5, 0.5 * most],
+    ['waves', 0.5, most]
   ] as const) {
     const renderer = await device.renderer(SIDE * WIDTH, SIDE * HEIGHT, {
       reversedDepthBuffer: true,
@@ -248,7 +260,7 @@ export async function findCracks(
     const places = Math.round((part * count) / PER_PLACE)
     for (let n = 0; n < places && seconds() < until; n++) {
       await hunt.visit(n)
-      if (hunt.cameras < reported + REPORTED * part) continue
+      if (hunt.cameras < reported + REPORTED) continue
       reported = hunt.cameras
       report(
         `  ${ground}: ${reported} cameras, ${hunt.pages} pages, ${hunt.cracks.length} with gaps, ${seconds().toFixed(0)} s`

@@ -1,7 +1,8 @@
-import { groundSharesAt, type GroundShares, type Terrain } from '@welkin/terrain'
+import type { GroundShares, Terrain } from '@welkin/terrain'
 import type { InstancedBufferGeometry, Matrix4, Plane } from 'three'
 import { DynamicDrawUsage, InstancedBufferAttribute, MathUtils, Vector3 } from 'three'
 import { randomSequence } from '../../random'
+import type { CellGrounds } from './CellGrounds'
 
 /** Square of the ground that plants stand on. */
 export interface GroundCell {
@@ -34,14 +35,12 @@ export interface Thinning {
 
 /** Cells about the viewer. */
 export interface PlantCellsOptions {
-  /** Side of a cell [m]. */
-  readonly side: number
+  /** Ground of cells, whose side is that of these. */
+  readonly grounds: CellGrounds
   /** Cells along an edge of their square, an even number. */
   readonly count: number
   /** Most plants in a cell. */
   readonly most: number
-  /** Steps between known heights along a cell's edge. */
-  readonly steps: number
   /** Distances between which plants are drawn, and the height of the highest [m]. */
   readonly near: number
   readonly far: number
@@ -53,10 +52,6 @@ export interface PlantCellsOptions {
 }
 
 const place = new Vector3()
-
-/** Height by which the ground bends down from the plane of the plants' frame [m]. */
-const bend = ({ atmosphere }: Terrain, x: number, z: number): number =>
-  (x * x + z * z) / (2 * atmosphere.ellipsoid.maximumRadius)
 
 /** Part of the plants that is drawn at a distance [m]. */
 const keptAt = (thinning: Thinning | null, distance: number): number =>
@@ -89,7 +84,8 @@ export class PlantCells {
   readonly #held: (readonly [number, number] | null)[]
   /** Cells about the viewer's, the nearest first. */
   readonly #order: (readonly [number, number])[]
-  readonly #heights: number[] = []
+  /** Heights of the cell that is planted [m]. */
+  #heights: Float32Array = new Float32Array()
 
   constructor(options: PlantCellsOptions, seed: number) {
     const { count, most } = options
@@ -124,7 +120,8 @@ export class PlantCells {
    * @param viewer - In the plants' frame, like `planes`, the sides of the view.
    */
   choose(viewer: Vector3, planes: readonly Plane[]): void {
-    const { side, most, near, far, tall, thinning } = this.options
+    const { most, near, far, tall, thinning } = this.options
+    const { side } = this.options.grounds
     const radius = side * Math.SQRT1_2 + tall
     let n = 0
     for (const [slot, count] of this.#counts.entries()) {
@@ -155,7 +152,8 @@ export class PlantCells {
     reach: number,
     take: (places: Float32Array, looks: Float32Array, from: number) => void
   ): void {
-    const { side, most } = this.options
+    const { grounds, most } = this.options
+    const { side } = grounds
     for (const [slot, count] of this.#counts.entries()) {
       const cell = this.#held[slot]
       if (count === 0 || cell === null) continue
@@ -169,6 +167,7 @@ export class PlantCells {
   clear(): void {
     this.#held.fill(null)
     this.#counts.fill(0)
+    this.options.grounds.clear()
   }
 
   /**
@@ -180,7 +179,8 @@ export class PlantCells {
    * @returns True if any was planted.
    */
   update(terrain: Terrain, toWorld: Matrix4, x: number, z: number, until: number): boolean {
-    const { side, count } = this.options
+    const { count, grounds } = this.options
+    const { side } = grounds
     const [column, row] = [Math.round(x / side), Math.round(z / side)]
     let isChanged = false
     for (const [i, j] of this.#order) {
@@ -197,43 +197,31 @@ export class PlantCells {
   }
 
   #sow(terrain: Terrain, toWorld: Matrix4, u: number, v: number, slot: number): void {
-    const { side, most, sow } = this.options
-    place.set((u + 0.5) * side, 0, (v + 0.5) * side).applyMatrix4(toWorld)
-    const height = terrain.heightBelow(place)
-    const shares = groundSharesAt(terrain, place)
+    const { grounds, most, sow } = this.options
+    const { side } = grounds
+    const ground = grounds.at(terrain, toWorld, u, v)
     const random = randomSequence(this.#seed + Math.imul(u, 73856093) + Math.imul(v, 19349663))
     const [places, looks] = [this.#places, this.#looks]
     const first = 4 * slot * most
-    this.#middles[slot] = height - bend(terrain, (u + 0.5) * side, (v + 0.5) * side)
+    this.#middles[slot] = ground.middle
     let n = 0
     const plant = (x: number, z: number, size: number, tint: number): void => {
       if (n === most) return
-      // Bare cells need no heights.
-      if (n === 0) this.#findHeights(terrain, toWorld, u, v)
+      if (n === 0) this.#heights = grounds.heightsOf(ground, terrain, toWorld, u, v)
       const at = first + 4 * n
       places.set([(u + x) * side, this.#heightAt(x, z), (v + z) * side, size], at)
       looks.set([2 * Math.PI * random(), random(), n / most, tint], at)
       n++
     }
-    const overSea = height - Math.max(terrain.seaLevel, -1e9)
+    const overSea = ground.height - Math.max(terrain.seaLevel, -1e9)
+    const { shares } = ground
     sow({ shares, overSea, x: u * side, z: v * side, side, random, plant })
     this.#counts[slot] = n
   }
 
-  #findHeights(terrain: Terrain, toWorld: Matrix4, u: number, v: number): void {
-    const { side, steps } = this.options
-    for (let j = 0; j <= steps; j++) {
-      for (let i = 0; i <= steps; i++) {
-        const [x, z] = [(u + i / steps) * side, (v + j / steps) * side]
-        const height = terrain.heightBelow(place.set(x, 0, z).applyMatrix4(toWorld))
-        this.#heights[j * (steps + 1) + i] = height - bend(terrain, x, z)
-      }
-    }
-  }
-
   /** Height between those of the cell that is planted, places in [0, 1] [m]. */
   #heightAt(x: number, z: number): number {
-    const { steps } = this.options
+    const { steps } = this.options.grounds
     const [i, j] = [
       Math.min(Math.floor(x * steps), steps - 1),
       Math.min(Math.floor(z * steps), steps - 1)

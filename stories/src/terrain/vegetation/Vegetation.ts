@@ -8,6 +8,7 @@ import { createFlowers, FLOWERS, GOES } from './flowers'
 import { createGrass, GRASSES } from './grass'
 import { createImpostors, drawPictures, type TreePictures } from './impostors'
 import { NearTrees } from './NearTrees'
+import { CellGrounds } from './CellGrounds'
 import { PlantCells, type GroundCell, type PlantCellsOptions, type Thinning } from './PlantCells'
 import { plantUniforms } from './plantShader'
 import { valueNoise } from './valueNoise'
@@ -35,7 +36,7 @@ const LOWLAND = [60, 420] as const
 
 /** Straw in the grass of a cell, as the ground's colour has it. */
 const strawOf = ({ shares, overSea }: GroundCell): number =>
-  0.75 *
+  0.5 *
   smoothstep(
     0.6 * shares.patch + 1.5 * shares.climate + 0.55 * (1 - smoothstep(overSea, ...LOWLAND)),
     -0.3,
@@ -71,13 +72,13 @@ function sowGrass(cell: GroundCell, order: readonly number[]): void {
     const [x, z] = [((i % side) + random()) / side, (Math.floor(i / side) + random()) / side]
     // All numbers are drawn, so that others stay where they are.
     const [chance, size, dry] = [random(), random(), random()]
-    const dense = lerp(0.45, 1.25, smoothstep(clumpAt('dense', cell, x, z), 0.25, 0.7))
+    const dense = lerp(0.6, 1.5, smoothstep(clumpAt('dense', cell, x, z), 0.2, 0.6))
     if (chance > (1.3 * share - 0.15) * dense) continue
     const high = clumpAt('high', cell, x, z)
-    const long = lerp(0.5, 1.25, smoothstep(high, 0.3, 0.75)) * (0.65 + 0.6 * size)
+    const long = lerp(0.6, 1.55, smoothstep(high, 0.3, 0.75)) * (0.65 + 0.6 * size)
     // Here and there one stands out, more of them in high grass.
-    const tall = dry > 0.985 - 0.08 * high ? 1.5 : 1
-    const spot = 0.55 * (clumpAt('dry', cell, x, z) - 0.5)
+    const tall = dry > 0.985 - 0.06 * high ? 1.45 : 1
+    const spot = 0.6 * (clumpAt('dry', cell, x, z) - 0.55)
     cell.plant(x, z, long * tall, straw + spot + 0.25 * (dry - 0.5))
   }
 }
@@ -88,7 +89,7 @@ function sowFlowers(cell: GroundCell, order: readonly number[]): void {
   for (let i = 0; i < order.length; i++) {
     const [x, z, chance, size, other] = [random(), random(), random(), random(), random()]
     const patch = smoothstep(clumpAt('flowers', cell, x, z), 0.45, 0.85)
-    if (chance > open * (0.04 + 0.9 * patch)) continue
+    if (chance > open * (0.05 + 0.95 * patch)) continue
     const own = Math.floor(FLOWERS * 0.999 * clumpAt('kinds', cell, x, z) + 0.8 * (other - 0.5))
     cell.plant(x, z, 0.55 + 0.6 * size, clamp(own, 0, FLOWERS - 1))
   }
@@ -121,15 +122,19 @@ function sowTrees(
   }
 }
 
-/** Cells of a kind of plants: side [m], their number along an edge, most plants, and what is planted. */
+/** Ground of cells, twice as many as are held. */
+const groundsOf = (side: number, count: number): CellGrounds =>
+  new CellGrounds(side, 2, 2 * count ** 2)
+
+/** Cells of a kind of plants: their ground, their number along an edge, most plants, and what is planted. */
 function cellsOf(
-  [side, count, most]: readonly [number, number, number],
+  [grounds, count, most]: readonly [CellGrounds, number, number],
   drawn: Pick<PlantCellsOptions, 'near' | 'far' | 'tall'> & { thinning?: Thinning },
   seed: number,
   sow: (cell: GroundCell, order: readonly number[]) => void
 ): PlantCells {
   const order = orderOf(most)
-  const options = { side, count, most, steps: 2, thinning: null, ...drawn }
+  const options = { grounds, count, most, thinning: null, ...drawn }
   return new PlantCells({ ...options, sow: cell => sow(cell, order) }, seed)
 }
 
@@ -174,15 +179,16 @@ export class Vegetation extends Group {
     super()
     this.#terrain = terrain
     const uniforms = this.#uniforms
-    const near = cellsOf([2, 22, 64], grassReach(GRASSES.near), 1, sowGrass)
-    const far = cellsOf([6, 30, 81], grassReach(GRASSES.far), 2, sowGrass)
+    const near = cellsOf([groundsOf(2, 22), 22, 64], grassReach(GRASSES.near), 1, sowGrass)
+    const far = cellsOf([groundsOf(6, 30), 30, 81], grassReach(GRASSES.far), 2, sowGrass)
     const meadow = { near: 0, far: GOES[1], tall: 0.6 }
-    const flowers = cellsOf([4, 24, 90], meadow, 3, sowFlowers)
+    const flowers = cellsOf([groundsOf(4, 24), 24, 90], meadow, 3, sowFlowers)
     this.add(createGrass('near', near, uniforms), createGrass('far', far, uniforms))
     this.add(createFlowers(flowers, uniforms))
+    const woods = groundsOf(25, 72)
     this.#trees = TREES.map((tree, i) => {
       const drawn = { near: BRANCHES, far: 1.1 * TREES_GO[1], tall: 22 }
-      const cells = cellsOf([25, 72, 16], drawn, 4 + i, (cell, order) =>
+      const cells = cellsOf([woods, 72, 16], drawn, 4 + i, (cell, order) =>
         sowTrees(cell, order, tree)
       )
       const shape = tree.shape()

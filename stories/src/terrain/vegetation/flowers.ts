@@ -35,7 +35,7 @@ const STEM = [0.06, 0.11, 0.025] as const
 const HEART = [0.7, 0.42, 0.02] as const
 
 /** Radius of a flower and height of its stem [m], and number of its petals. */
-const RADIUS = 0.021
+const RADIUS = 0.024
 const HEIGHT = 0.36
 const SIDES = 7
 
@@ -68,6 +68,7 @@ function flower(): BufferGeometry {
 /** Flowers of a meadow. */
 export function createFlowers(cells: PlantCells, uniforms: PlantUniforms): Mesh {
   const material = new PlantMaterial({ side: DoubleSide })
+  material.fog = false
   const { foot, size, random, rank, tint, distance, turned } = plantNodes(uniforms)
   const petal = attribute<'float'>('petal', 'float') as unknown as Float
   const shown = smoothstep(GOES[0], GOES[1], distance).oneMinus().mul(size.min(1))

@@ -26,7 +26,7 @@ const GREEN = [0.05, 0.098, 0.021] as const
 const STRAW = [0.225, 0.19, 0.085] as const
 
 /** Half of a blade's width at its root [m], and that of a pixel at a distance of 1 m: a blade is no narrower. */
-const HALF_WIDTH = 0.0032
+const HALF_WIDTH = 0.004
 const HALF_PIXEL = 0.0004
 
 /** Geometry of a tuft. */
@@ -87,15 +87,15 @@ function tuft({ blades, radius, length, joints }: TuftOptions): BufferGeometry {
  */
 export const GRASSES = {
   near: {
-    tuft: { blades: 14, radius: 0.14, length: [0.12, 0.4], joints: 2 },
+    tuft: { blades: 15, radius: 0.17, length: [0.13, 0.42], joints: 2 },
     reach: [-2, -1, 13, 20],
-    thinning: { from: 5, to: 20, least: 0.55 },
+    thinning: { from: 6, to: 20, least: 0.5 },
     wide: 1.3
   },
   far: {
-    tuft: { blades: 14, radius: 0.42, length: [0.14, 0.36], joints: 1 },
+    tuft: { blades: 13, radius: 0.45, length: [0.16, 0.4], joints: 1 },
     reach: [11, 18, 55, 84],
-    thinning: { from: 18, to: 80, least: 0.35 },
+    thinning: { from: 16, to: 70, least: 0.3 },
     wide: 1.7
   }
 } as const
@@ -112,6 +112,8 @@ export function createGrass(
 ): Mesh {
   const { tuft: options, reach, thinning, wide: wider } = GRASSES[kind]
   const material = new PlantMaterial({ side: DoubleSide })
+  // Within some metres there is no haze, but for thick mist.
+  material.fog = kind === 'far'
   const nodes = plantNodes(uniforms)
   const { foot, size, random, tint, distance, turned } = nodes
   const tip = attribute<'float'>('tip', 'float') as unknown as Float
@@ -147,7 +149,7 @@ export function createGrass(
   const form = kind === 'far' ? smoothstep(leaves * 0.4, gone, distance).oneMinus() : 1
   const light = mix(1, mix(0.35, 1.75, tip).mul(random.mul(0.5).add(0.75)), form)
   // Long blades have seeds, which are straw.
-  const seeds = smoothstep(1.25, 1.7, size)
+  const seeds = smoothstep(1.45, 1.9, size)
     .mul(smoothstep(0.62, 0.8, tip))
     .mul(0.8)
   const blade = mix(mix(green.mul(fresh), straw, dry), straw, seeds)
