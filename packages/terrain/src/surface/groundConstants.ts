@@ -1,47 +1,53 @@
-/** Rules by which the ground consists of what it does, for the shader and the CPU. Heights in m, steps as [from, to]. */
+// Rules by which the ground consists of what it does, for the shader and the CPU. Ranges are those of smooth steps.
 
 /**
- * Height of the snow line, by the sine s of the latitude: equator − square · s² − fourth · s⁴. Snow lies above 5,200 m at the equator, 3,100 m in the
- * Alps, 1,700 m at 60°, and at sea level near the poles.
+ * Height of the snow line at the equator, and what it loses by the second and the fourth power of the latitude's sine [m]: 5,200 m at the equator,
+ * 3,100 m in the Alps, 1,700 m at 60°, and the sea near the poles.
  */
-export const SNOW_LINE = {
-  equator: 5200,
-  square: 2000,
-  fourth: 3600,
-  /** Height by which it lies higher where it is dry, per climate, and on slopes to the equator, per slope. */
-  dry: 500,
-  sunny: 350
-} as const
+export const SNOW_LINE = 5200
+export const SNOW_BY_SQUARE = 2000
+export const SNOW_BY_FOURTH = 3600
 
-/** Snow by the height over its line, patches and slope. */
-export const SNOW = { over: [-150, 250], patch: 420, steepness: [0.26, 0.42] } as const
+/** Height by which snow lies higher where it is dry, per climate, and on slopes to the equator, per slope [m]. */
+export const DRY_SNOW = 500
+export const SUNNY_SNOW = 350
 
-/** Height of the snow line over the tree line, and share of patches in that. */
-export const TREES = { below: 1100, patch: 350, end: [-150, 50], overSea: [15, 60] } as const
+/** Heights over the snow line between which snow comes, and what patches change of it [m]; slopes on which it ends [1 − cosine]. */
+export const SNOW_OVER = [-150, 250] as const
+export const SNOW_PATCH = 420
+export const SNOW_STEEPNESS = [0.26, 0.42] as const
 
-/** Dryness: that of the belts about the tropics, by the sine of the latitude, that of all land, and its share of the climate. */
-export const DRYNESS = {
-  begins: [0.12, 0.4],
-  ends: [0.42, 0.62],
-  belts: 1.1,
-  least: -0.35,
-  climate: 1.4
-} as const
+/** Height of the snow line over the tree line, and what patches change of it; heights over it between which woods end, and over the sea [m]. */
+export const TREES_BELOW = 1100
+export const TREES_PATCH = 350
+export const TREES_END = [-150, 50] as const
+export const TREES_OVER_SEA = [15, 60] as const
 
-/**
- * Moisture of woods: share of the climate in it, less: land from orbit is of one colour (*Terrain*); part of the patches that is open where it is
- * neither wet nor dry; moisture that land just above the sea lacks, and heights over it between which it does: open plains below woods.
- */
-export const WOODS = { climate: 1.4, open: 0.15, lowland: { dry: 0.4, over: [60, 420] } } as const
+/** Sines of latitude between which the dry belts begin and end, their dryness, that of all land, and that per climate [–]. */
+export const DRY_BEGINS = [0.12, 0.4] as const
+export const DRY_ENDS = [0.42, 0.62] as const
+export const DRY_BELTS = 1.1
+export const LEAST_DRYNESS = -0.35
+export const DRY_CLIMATE = 1.4
 
-/** Moisture from which on all is woods, and below which nothing is. */
+/** Share of the climate in where woods grow: fewer of them where it is dry [–]. Less: land from orbit is of one colour (*Terrain*). */
+export const DRY_WOODS = 1.4
+
+/** Part of the patches that is open where it is neither wet nor dry, over half of them [–]. */
+export const OPEN = 0.15
+
+/** Moisture that land just above the sea lacks [–], and heights over it between which it does [m]: open plains below woods. */
+export const LOWLAND_DRYNESS = 0.4
+export const LOWLAND = [60, 420] as const
+
+/** Moisture that a meadow lacks of what a wood has at least [–]. */
 export const MOIST = 0.2
 
-/** Slope, as 1 less its cosine, with patches: rock where it is steep. */
-export const ROCK = { steepness: [0.13, 0.24], patch: 0.05 } as const
+/** Slopes between which rock comes, and what patches change of them [1 − cosine]. */
+export const ROCK_STEEPNESS = [0.13, 0.24] as const
+export const ROCK_PATCH = 0.05
 
-/** Sand by the height over the sea, and share of patches in it. */
-export const SHORE = { over: [2, 9], patch: 4 } as const
-
-/** Scree by the height over the tree line. */
+/** Heights over the sea between which sand ends, and what patches change of them; heights over the tree line between which scree comes [m]. */
+export const SHORE = [2, 9] as const
+export const SHORE_PATCH = 4
 export const SCREE = [-50, 450] as const

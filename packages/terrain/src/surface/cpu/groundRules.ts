@@ -1,13 +1,31 @@
 import {
-  DRYNESS,
+  DRY_BEGINS,
+  DRY_BELTS,
+  DRY_CLIMATE,
+  DRY_ENDS,
+  DRY_SNOW,
+  DRY_WOODS,
+  LEAST_DRYNESS,
+  LOWLAND,
+  LOWLAND_DRYNESS,
   MOIST,
-  ROCK,
+  OPEN,
+  ROCK_PATCH,
+  ROCK_STEEPNESS,
   SCREE,
   SHORE,
-  SNOW,
+  SHORE_PATCH,
+  SNOW_BY_FOURTH,
+  SNOW_BY_SQUARE,
   SNOW_LINE,
-  TREES,
-  WOODS
+  SNOW_OVER,
+  SNOW_PATCH,
+  SNOW_STEEPNESS,
+  SUNNY_SNOW,
+  TREES_BELOW,
+  TREES_END,
+  TREES_OVER_SEA,
+  TREES_PATCH
 } from '../groundConstants'
 import type { OfKinds } from '../maps/groundKinds'
 
@@ -39,34 +57,35 @@ export function groundShares(place: PlaceOnCPU): SharesOnCPU {
   const { height, overSea, patch, climate, sinLatitude, sinNormal, cosSlope } = place
   const square = sinLatitude ** 2
   const sunny = (sinLatitude - sinNormal) * Math.sign(sinLatitude)
-  const { equator, square: bySquare, fourth, dry, sunny: bySun } = SNOW_LINE
   const snowLine =
-    equator - bySquare * square - fourth * square ** 2 + dry * climate + bySun * sunny
+    SNOW_LINE -
+    SNOW_BY_SQUARE * square -
+    SNOW_BY_FOURTH * square ** 2 +
+    DRY_SNOW * climate +
+    SUNNY_SNOW * sunny
   const overSnow = height - snowLine
-  const overTrees = overSnow + TREES.below + TREES.patch * patch
+  const overTrees = overSnow + TREES_BELOW + TREES_PATCH * patch
   const latitude = Math.abs(sinLatitude)
-  const subtropical =
-    smoothstep(...DRYNESS.begins, latitude) * (1 - smoothstep(...DRYNESS.ends, latitude))
+  const subtropical = smoothstep(...DRY_BEGINS, latitude) * (1 - smoothstep(...DRY_ENDS, latitude))
   const dryness = Math.min(
-    Math.max(DRYNESS.belts * subtropical + DRYNESS.least + DRYNESS.climate * climate, 0),
+    Math.max(DRY_BELTS * subtropical + LEAST_DRYNESS + DRY_CLIMATE * climate, 0),
     1
   )
-  const steepness = 1 - cosSlope + ROCK.patch * patch
-  const lowland = 1 - smoothstep(...WOODS.lowland.over, overSea)
-  const moisture =
-    patch - dryness - WOODS.climate * climate - WOODS.open - WOODS.lowland.dry * lowland
+  const steepness = 1 - cosSlope + ROCK_PATCH * patch
+  const lowland = 1 - smoothstep(...LOWLAND, overSea)
+  const moisture = patch - dryness - DRY_WOODS * climate - OPEN - LOWLAND_DRYNESS * lowland
   const layers = {
     snow:
-      smoothstep(...SNOW.over, overSnow + SNOW.patch * patch) *
-      (1 - smoothstep(...SNOW.steepness, steepness)),
-    rock: smoothstep(...ROCK.steepness, steepness),
-    sand: 1 - smoothstep(...SHORE.over, overSea + SHORE.patch * patch),
+      smoothstep(...SNOW_OVER, overSnow + SNOW_PATCH * patch) *
+      (1 - smoothstep(...SNOW_STEEPNESS, steepness)),
+    rock: smoothstep(...ROCK_STEEPNESS, steepness),
+    sand: 1 - smoothstep(...SHORE, overSea + SHORE_PATCH * patch),
     scree: smoothstep(...SCREE, overTrees),
     desert: dryness,
     forest:
       smoothstep(-MOIST, 0, moisture) *
-      (1 - smoothstep(...TREES.end, overTrees)) *
-      smoothstep(...TREES.overSea, overSea)
+      (1 - smoothstep(...TREES_END, overTrees)) *
+      smoothstep(...TREES_OVER_SEA, overSea)
   }
   const shares = { snow: 0, rock: 0, sand: 0, scree: 0, desert: 0, forest: 0, grass: 0 }
   let left = 1

@@ -1,15 +1,33 @@
 import { float, smoothstep } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 import {
-  DRYNESS,
+  DRY_BEGINS,
+  DRY_BELTS,
+  DRY_CLIMATE,
+  DRY_ENDS,
+  DRY_SNOW,
+  DRY_WOODS,
+  LEAST_DRYNESS,
+  LOWLAND,
+  LOWLAND_DRYNESS,
   MOIST,
-  ROCK,
+  OPEN,
+  ROCK_PATCH,
+  ROCK_STEEPNESS,
   SCREE,
   SHORE,
-  SNOW,
+  SHORE_PATCH,
+  SNOW_BY_FOURTH,
+  SNOW_BY_SQUARE,
   SNOW_LINE,
-  TREES,
-  WOODS
+  SNOW_OVER,
+  SNOW_PATCH,
+  SNOW_STEEPNESS,
+  SUNNY_SNOW,
+  TREES_BELOW,
+  TREES_END,
+  TREES_OVER_SEA,
+  TREES_PATCH
 } from '../groundConstants'
 import type { OfKinds } from '../maps/groundKinds'
 import type { Grain, GrainPlace } from './grain'
@@ -86,24 +104,24 @@ export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimat
   const square = sinLatitude.mul(sinLatitude).toConst('square')
   // Ground that falls towards the equator has a normal nearer to it than up is.
   const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign()) as unknown as Float
-  const snowLine = float(SNOW_LINE.equator)
-    .sub(square.mul(square.mul(SNOW_LINE.fourth).add(SNOW_LINE.square)))
-    .add(climate.mul(SNOW_LINE.dry))
-    .add(sunny.mul(SNOW_LINE.sunny))
+  const snowLine = float(SNOW_LINE)
+    .sub(square.mul(square.mul(SNOW_BY_FOURTH).add(SNOW_BY_SQUARE)))
+    .add(climate.mul(DRY_SNOW))
+    .add(sunny.mul(SUNNY_SNOW))
     .toConst('snowLine')
   const overSnow = height.sub(snowLine).toConst('overSnow') as Float
   const overTrees = overSnow
-    .add(TREES.below)
-    .add(patch.mul(TREES.patch))
+    .add(TREES_BELOW)
+    .add(patch.mul(TREES_PATCH))
     .toConst('overTrees') as Float
-  const dryness = smoothstep(...DRYNESS.begins, sinLatitude)
-    .mul(smoothstep(...DRYNESS.ends, sinLatitude).oneMinus())
-    .mul(DRYNESS.belts)
-    .add(DRYNESS.least)
-    .add(climate.mul(DRYNESS.climate))
+  const dryness = smoothstep(...DRY_BEGINS, sinLatitude)
+    .mul(smoothstep(...DRY_ENDS, sinLatitude).oneMinus())
+    .mul(DRY_BELTS)
+    .add(LEAST_DRYNESS)
+    .add(climate.mul(DRY_CLIMATE))
     .clamp(0, 1)
     .toConst('dryness') as Float
-  const lowland = smoothstep(...WOODS.lowland.over, overSea)
+  const lowland = smoothstep(...LOWLAND, overSea)
     .oneMinus()
     .toConst('lowland')
   return { overSea, overSnow, overTrees, sunny, dryness, lowland }
@@ -122,7 +140,7 @@ export function groundRules(
   const relief = stone.mul(0.6).add(boulder.mul(0.5)).add(crown.mul(0.6)).toConst('relief')
   const steepness = cosSlope
     .oneMinus()
-    .add(patch.mul(ROCK.patch))
+    .add(patch.mul(ROCK_PATCH))
     .add(relief.mul(0.03))
     .sub(hollow.mul(HOLLOW_SOIL))
     .toConst('steepness')
@@ -130,18 +148,18 @@ export function groundRules(
   const lost = grain.footprint.div(PATCHES_GONE).min(1).mul(PATCH_DEVIATION).toConst()
   const moisture = patch
     .sub(dryness)
-    .sub(climate.mul(WOODS.climate))
-    .sub(WOODS.open)
-    .sub(lowland.mul(WOODS.lowland.dry))
+    .sub(climate.mul(DRY_WOODS))
+    .sub(OPEN)
+    .sub(lowland.mul(LOWLAND_DRYNESS))
     .toConst()
   const woods = smoothstep(
     lost.add(MOIST).negate(),
     lost,
     moisture.add(tuft.mul(0.12)).add(crown.mul(0.3))
   )
-    .mul(smoothstep(...TREES.end, overTrees).oneMinus())
+    .mul(smoothstep(...TREES_END, overTrees).oneMinus())
     // As with beaches: a pixel that shows much ground shows what lies behind the shore.
-    .mul(smoothstep(...TREES.overSea, overSea.add(spread)))
+    .mul(smoothstep(...TREES_OVER_SEA, overSea.add(spread)))
     .toConst('woods')
   // Stones come through grass where they are highest.
   const bareness = smoothstep(
@@ -151,16 +169,16 @@ export function groundRules(
   ).toConst('bareness')
   // A pixel as large as a beach is mostly of what lies behind it.
   const inland = smoothstep(
-    ...SHORE.over,
-    overSea.add(patch.mul(SHORE.patch)).add(relief).add(spread)
+    ...SHORE,
+    overSea.add(patch.mul(SHORE_PATCH)).add(relief).add(spread)
   ).toConst('inland')
-  const bare = smoothstep(...ROCK.steepness, steepness).toConst('bare')
+  const bare = smoothstep(...ROCK_STEEPNESS, steepness).toConst('bare')
   const snow = smoothstep(
-    spread.negate().add(SNOW.over[0]),
-    spread.add(SNOW.over[1]),
-    overSnow.add(patch.mul(SNOW.patch)).add(hollow.mul(HOLLOW_SNOW)).sub(relief.mul(160))
+    spread.negate().add(SNOW_OVER[0]),
+    spread.add(SNOW_OVER[1]),
+    overSnow.add(patch.mul(SNOW_PATCH)).add(hollow.mul(HOLLOW_SNOW)).sub(relief.mul(160))
   )
-    .mul(smoothstep(...SNOW.steepness, steepness).oneMinus())
+    .mul(smoothstep(...SNOW_STEEPNESS, steepness).oneMinus())
     .toConst('snow')
   const layers = { snow, bare, inland, bareness, dryness, woods }
   return { layers, relief, spread }
