@@ -1,3 +1,4 @@
+import { MathUtils } from 'three'
 import {
   DRY_BEGINS,
   DRY_BELTS,
@@ -47,10 +48,7 @@ export interface PlaceOnCPU {
 /** Shares of materials with a sum of 1, desert being sand inland. */
 export type SharesOnCPU = OfKinds<number> & { readonly desert: number }
 
-function smoothstep(start: number, end: number, value: number): number {
-  const t = Math.min(Math.max((value - start) / (end - start), 0), 1)
-  return t * t * (3 - 2 * t)
-}
+const { smoothstep } = MathUtils
 
 /** Shares of the ground's materials on open ground, without stones and blades. Twin of ../tsl/groundRules.ts and groundShares.ts. */
 export function groundShares(place: PlaceOnCPU): SharesOnCPU {
@@ -66,26 +64,26 @@ export function groundShares(place: PlaceOnCPU): SharesOnCPU {
   const overSnow = height - snowLine
   const overTrees = overSnow + TREES_BELOW + TREES_PATCH * patch
   const latitude = Math.abs(sinLatitude)
-  const subtropical = smoothstep(...DRY_BEGINS, latitude) * (1 - smoothstep(...DRY_ENDS, latitude))
+  const subtropical = smoothstep(latitude, ...DRY_BEGINS) * (1 - smoothstep(latitude, ...DRY_ENDS))
   const dryness = Math.min(
     Math.max(DRY_BELTS * subtropical + LEAST_DRYNESS + DRY_CLIMATE * climate, 0),
     1
   )
   const steepness = 1 - cosSlope + ROCK_PATCH * patch
-  const lowland = 1 - smoothstep(...LOWLAND, overSea)
+  const lowland = 1 - smoothstep(overSea, ...LOWLAND)
   const moisture = patch - dryness - DRY_WOODS * climate - OPEN - LOWLAND_DRYNESS * lowland
   const layers = {
     snow:
-      smoothstep(...SNOW_OVER, overSnow + SNOW_PATCH * patch) *
-      (1 - smoothstep(...SNOW_STEEPNESS, steepness)),
-    rock: smoothstep(...ROCK_STEEPNESS, steepness),
-    sand: 1 - smoothstep(...SHORE, overSea + SHORE_PATCH * patch),
-    scree: smoothstep(...SCREE, overTrees),
+      smoothstep(overSnow + SNOW_PATCH * patch, ...SNOW_OVER) *
+      (1 - smoothstep(steepness, ...SNOW_STEEPNESS)),
+    rock: smoothstep(steepness, ...ROCK_STEEPNESS),
+    sand: 1 - smoothstep(overSea + SHORE_PATCH * patch, ...SHORE),
+    scree: smoothstep(overTrees, ...SCREE),
     desert: dryness,
     forest:
-      smoothstep(-MOIST, 0, moisture) *
-      (1 - smoothstep(...TREES_END, overTrees)) *
-      smoothstep(...TREES_OVER_SEA, overSea)
+      smoothstep(moisture, -MOIST, 0) *
+      (1 - smoothstep(overTrees, ...TREES_END)) *
+      smoothstep(overSea, ...TREES_OVER_SEA)
   }
   const shares = { snow: 0, rock: 0, sand: 0, scree: 0, desert: 0, forest: 0, grass: 0 }
   let left = 1
