@@ -47,6 +47,8 @@ export interface CrackSearch {
   readonly pixels: number
   readonly seconds: number
   readonly cracks: Crack[]
+  /** Cameras with such pixels at the limb alone, where a globe of triangles is lower than a smooth one. */
+  readonly atLimb: number
 }
 
 /** Ground that is looked at: rough waves, or the made-up planet. */
@@ -94,6 +96,7 @@ class CrackHunt {
   readonly #random = randomSequence(31)
   readonly cracks: Crack[] = []
   cameras = 0
+  atLimb = 0
   pixels = 0
 
   constructor(
@@ -205,8 +208,9 @@ class CrackHunt {
       const position = camera.position.clone().divide(radii)
       // The horizon of a globe of triangles lies deeper, by their sagitta.
       const sagitta = (edge * edge * (position.lengthSq() - 1)) / 8
-      const over = position.lengthSq() - (1 - sagitta) ** 2
-      let pixels = 0
+      const over = position.lengthSq() - 1
+      const surelyOver = position.lengthSq() - (1 - sagitta) ** 2
+      let [pixels, limb] = [0, 0]
       for (let y = 0; y < HEIGHT; y++) {
         for (let x = 0; x < WIDTH; x++) {
           ray.copy(forward).negate()
@@ -215,10 +219,13 @@ class CrackHunt {
           const down = -ray.dot(position)
           if (down <= 0 || down * down <= ray.lengthSq() * over) continue
           this.pixels++
-          if (data[4 * ((top + y) * stride + left + x) + 1] === 0) pixels++
+          if (data[4 * ((top + y) * stride + left + x) + 1] !== 0) continue
+          if (down * down > ray.lengthSq() * surelyOver) pixels++
+          else limb++
         }
       }
       this.cameras++
+      if (limb > 0 && pixels === 0) this.atLimb++
       if (pixels > 0) this.cracks.push({ ground: this.ground, ...place, pixels })
     }
   }
@@ -245,7 +252,7 @@ export async function findCracks(
 ): Promise<CrackSearch> {
   const start = performance.now()
   const seconds = (): number => (performance.now() - start) / 1000
-  const sum = { cameras: 0, pixels: 0, cracks: [] as Crack[] }
+  const sum = { cameras: 0, pixels: 0, atLimb: 0, cracks: [] as Crack[] }
   for (const [ground, part, until] of [
     ['mountains', 0.5, 0.5 * most],
     ['waves', 0.5, most]
@@ -269,6 +276,7 @@ export async function findCracks(
     await hunt.finish()
     sum.cameras += hunt.cameras
     sum.pixels += hunt.pixels
+    sum.atLimb += hunt.atLimb
     sum.cracks.push(...hunt.cracks)
     hunt.dispose()
     release(renderer)
@@ -277,13 +285,13 @@ export async function findCracks(
 }
 
 /** Lines of a report. */
-export function crackLines({ cameras, pixels, seconds, cracks }: CrackSearch): string {
+export function crackLines({ cameras, pixels, seconds, cracks, atLimb }: CrackSearch): string {
   const found = cracks.map(
     ({ ground, longitude, latitude, height, pixels: missing }) =>
       `  ${ground}: ${missing} pixels from ${longitude}°, ${latitude}°, ${height.toPrecision(6)} m`
   )
   return [
-    `cracks         ${cracks.length} of ${cameras} cameras, ${(pixels / 1e6).toFixed(1)} million pixels below the horizon, ${seconds.toFixed(0)} s`,
+    `cracks         ${cracks.length} of ${cameras} cameras, ${(pixels / 1e6).toFixed(1)} million pixels below the horizon, ${seconds.toFixed(0)} s; at the limb alone ${atLimb}`,
     ...found.slice(0, 20)
   ].join('\n')
 }
