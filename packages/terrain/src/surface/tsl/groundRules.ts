@@ -98,17 +98,17 @@ export interface GroundClimate {
 export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimate {
   const { height, patch, climate, up, pole } = place
   const northing = up.dot(pole).toConst() as Float
-  const sinLatitude = northing.abs().toConst('sinLatitude')
+  const sinLatitude = northing.abs().toConst()
   const overSea = height.sub(seaLevel).toConst('overSea') as Float
 
-  const square = sinLatitude.mul(sinLatitude).toConst('square')
+  const square = sinLatitude.mul(sinLatitude).toConst()
   // Ground that falls towards the equator has a normal nearer to it than up is.
   const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign()) as unknown as Float
   const snowLine = float(SNOW_LINE)
     .sub(square.mul(square.mul(SNOW_BY_FOURTH).add(SNOW_BY_SQUARE)))
     .add(climate.mul(DRY_SNOW))
     .add(sunny.mul(SUNNY_SNOW))
-    .toConst('snowLine')
+    .toConst()
   const overSnow = height.sub(snowLine).toConst('overSnow') as Float
   const overTrees = overSnow
     .add(TREES_BELOW)
@@ -123,7 +123,7 @@ export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimat
     .toConst('dryness') as Float
   const lowland = smoothstep(...LOWLAND, overSea)
     .oneMinus()
-    .toConst('lowland')
+    .toConst()
   return { overSea, overSnow, overTrees, sunny, dryness, lowland }
 }
 
@@ -136,14 +136,14 @@ export function groundRules(
   const { patch, climate, cosSlope, hollow } = place
   const { stone, boulder, tuft, crown } = grain
   // A pixel that shows much ground shows its heights, too.
-  const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst('spread')
-  const relief = stone.mul(0.6).add(boulder.mul(0.5)).add(crown.mul(0.6)).toConst('relief')
+  const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst()
+  const relief = stone.mul(0.6).add(boulder.mul(0.5)).add(crown.mul(0.6)).toConst()
   const steepness = cosSlope
     .oneMinus()
     .add(patch.mul(ROCK_PATCH))
     .add(relief.mul(0.03))
     .sub(hollow.mul(HOLLOW_SOIL))
-    .toConst('steepness')
+    .toConst()
 
   const lost = grain.footprint.div(PATCHES_GONE).min(1).mul(PATCH_DEVIATION).toConst()
   const moisture = patch
