@@ -171,7 +171,7 @@ export class Vegetation extends Group {
   readonly #viewer = new Vector3()
   readonly #chosenAt = new Vector3(Infinity, 0, 0)
   readonly #toFrame = new Matrix4()
-  /** From the plants' frame to clip space, as plants were chosen last. */
+  /** Matrix from the plants' frame to clip space, as plants were chosen last. */
   readonly #view = new Matrix4()
   #hasFrame = false
 
