@@ -1,10 +1,11 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { MountainHeights, Terrain } from '@welkin/terrain'
+import { MountainHeights, Terrain, type HeightSource } from '@welkin/terrain'
 import { Matrix4, NearestFilter, PerspectiveCamera, RenderTarget, Scene, Vector3 } from 'three'
 import { vec4 } from 'three/tsl'
 import type { WebGPURenderer } from 'three/webgpu'
 import { randomSequence } from '../../stories/src/random'
 import { nextFrame, release, type HeadlessDevice } from '../headless/device'
+import { WaveHeights } from './cracksGround'
 
 /** Size of a camera's picture, and cameras along a row and a column of those that are read together. */
 const WIDTH = 64
@@ -14,12 +15,26 @@ const SIDE = 10
 /** Cameras about a place: pages are shared by them. */
 const PER_PLACE = 20
 
-/** Every fourth place has pages missing, so many of which are drawn for a camera. */
-const HASTY = 4
+/** Every fifth place has pages missing, so many of which are drawn for a camera: no divisor of the special places' turn, so that they have them all once. */
+const HASTY = 5
 const FEW_PAGES = 6
+
+/**
+ * Longest edge of a triangle over its distance: a tile is no nearer than one and a half of its diagonals, which are twelve cells long. Where pages
+ * are missing it may be longer; no more than so from afar, where it counts.
+ */
+const LONGEST_EDGE = 1 / 18
+const LONGEST_HASTY = 4 / 18
+
+/** Pages drawn for a camera over the made-up planet, each of which costs as much as the camera's picture. */
+const COSTLY_PAGES = 24
+
+/** Cameras between two lines of progress. */
+const REPORTED = 1000
 
 /** A place where no ground was drawn. */
 export interface Crack {
+  readonly ground: GroundName
   readonly longitude: number
   readonly latitude: number
   readonly height: number
@@ -32,12 +47,19 @@ export interface CrackSearch {
   readonly pixels: number
   readonly seconds: number
   readonly cracks: Crack[]
+  /** Cameras with such pixels at the limb alone, where a globe of triangles is lower than a smooth one. */
+  readonly atLimb: number
 }
+
+/** Ground that is looked at: rough waves, or the made-up planet. */
+type GroundName = 'waves' | 'mountains'
 
 /** A camera whose picture is not read yet. */
 interface Shot {
   readonly camera: PerspectiveCamera
-  readonly place: Omit<Crack, 'pixels'>
+  readonly place: Pick<Crack, 'longitude' | 'latitude' | 'height'>
+  /** Longest edge of a triangle over its distance. */
+  edge: number
 }
 
 const degrees = (radians: number): number => (radians * 180) / Math.PI
@@ -57,48 +79,65 @@ const SPECIAL = [
 /** Draws the ground from cameras anywhere, and looks for pixels below the horizon that have none. */
 class CrackHunt {
   readonly #atmosphere = new Atmosphere({ frame: 'ecef' })
-  readonly #heights = new MountainHeights({ seed: 513 })
+  readonly #heights: HeightSource
   readonly #terrain: Terrain
   readonly #scene = new Scene()
-  readonly #target = new RenderTarget(SIDE * WIDTH, SIDE * HEIGHT, {
-    minFilter: NearestFilter,
-    magFilter: NearestFilter
-  })
-  readonly #shots: Shot[] = []
+  /** One is drawn to while the other is read. */
+  readonly #targets = [0, 1].map(
+    () =>
+      new RenderTarget(SIDE * WIDTH, SIDE * HEIGHT, {
+        minFilter: NearestFilter,
+        magFilter: NearestFilter
+      })
+  )
+  #shots: Shot[] = []
+  #reading: Promise<void> = Promise.resolve()
   readonly #axes = new Matrix4()
   readonly #random = randomSequence(31)
   readonly cracks: Crack[] = []
   cameras = 0
+  atLimb = 0
   pixels = 0
 
-  constructor(readonly renderer: WebGPURenderer) {
+  constructor(
+    readonly renderer: WebGPURenderer,
+    readonly ground: GroundName
+  ) {
+    this.#heights = ground === 'waves' ? new WaveHeights() : new MountainHeights({ seed: 513 })
     this.#terrain = new Terrain(this.#atmosphere, this.#heights, {
       seaLevel: -Infinity,
-      pageMemory: 60
+      // As much as one camera sees: slopes of pages have few texels then, and nobody looks at them.
+      pageMemory: 20
     })
     this.#terrain.material.fragmentNode = vec4(0, 1, 0, 1)
     renderer.setClearColor(0, 0)
     this.#scene.add(this.#terrain)
-    this.#target.scissorTest = true
+    for (const target of this.#targets) target.scissorTest = true
   }
 
-  /** Takes the pictures of a place. */
+  /** Pages drawn so far. */
+  get pages(): number {
+    return this.#terrain.pages.drawn
+  }
+
+  /** Takes the pictures of a place, from the highest one down: what a camera saw is there for the next. */
   async visit(number: number): Promise<void> {
     const random = this.#random
     const special = SPECIAL[number % (4 * SPECIAL.length)]
     const longitude = special?.[0] ?? 360 * random() - 180
     const latitude = special?.[1] ?? degrees(Math.asin(2 * random() - 1))
-    const isHasty = number % HASTY === HASTY - 1
-    for (let i = 0; i < PER_PLACE; i++) {
-      const height = 2 * 1e7 ** random()
+    const most = this.ground === 'waves' ? Infinity : COSTLY_PAGES
+    const pages = number % HASTY === HASTY - 1 ? FEW_PAGES : most
+    const heights = Array.from({ length: PER_PLACE }, () => 2 * 1e7 ** random())
+    for (const height of heights.sort((a, b) => b - a)) {
       const aside = Math.min((2 * height) / 111_000, 5)
       const place = {
         longitude: longitude + aside * (random() - 0.5),
         latitude: Math.min(Math.max(latitude + aside * (random() - 0.5), -90), 90),
         height
       }
-      this.#shoot({ camera: this.#cameraAt(place), place }, isHasty ? FEW_PAGES : Infinity)
-      if (this.#shots.length === SIDE * SIDE) await this.read()
+      this.#shoot({ camera: this.#cameraAt(place), place, edge: LONGEST_EDGE }, pages)
+      if (this.#shots.length === SIDE * SIDE) await this.#read()
     }
   }
 
@@ -120,90 +159,139 @@ class CrackHunt {
 
   #shoot(shot: Shot, pages: number): void {
     const { renderer } = this
+    const [target] = this.#targets
     const n = this.#shots.push(shot) - 1
     nextFrame()
     this.#terrain.update(renderer, shot.camera, pages)
+    if (!this.#terrain.isFull) shot.edge = LONGEST_HASTY
     const [x, y] = [(n % SIDE) * WIDTH, Math.floor(n / SIDE) * HEIGHT]
-    this.#target.viewport.set(x, y, WIDTH, HEIGHT)
-    this.#target.scissor.set(x, y, WIDTH, HEIGHT)
+    target.viewport.set(x, y, WIDTH, HEIGHT)
+    target.scissor.set(x, y, WIDTH, HEIGHT)
     renderer.autoClear = n === 0
-    renderer.setRenderTarget(this.#target)
+    renderer.setRenderTarget(target)
     if (n > 0) renderer.clearDepth()
     renderer.render(this.#scene, shot.camera)
     renderer.setRenderTarget(null)
   }
 
-  /** Reads the pictures that were drawn. */
-  async read(): Promise<void> {
-    const { width, height } = this.#target
-    const data = (await this.renderer.readRenderTargetPixelsAsync(
-      this.#target,
-      0,
-      0,
-      width,
-      height
-    )) as Uint8Array
-    const stride = data.length / height / 4
-    const core = this.#atmosphere.ellipsoid.grown(this.#heights.lowest)
-    const ray = new Vector3()
-    for (const [n, { camera, place }] of this.#shots.entries()) {
+  /** Asks for the pictures that were drawn, once those before have come. */
+  async #read(): Promise<void> {
+    await this.#reading
+    const [target] = this.#targets
+    const shots = this.#shots
+    this.#shots = []
+    const { width, height } = target
+    this.#reading = this.renderer
+      .readRenderTargetPixelsAsync(target, 0, 0, width, height)
+      .then(data => this.#count(shots, data as Uint8Array))
+    this.#targets.reverse()
+  }
+
+  /** Reads what is left. */
+  async finish(): Promise<void> {
+    await this.#read()
+    await this.#reading
+  }
+
+  #count(shots: readonly Shot[], data: Uint8Array): void {
+    const stride = data.length / (SIDE * HEIGHT) / 4
+    const { radii } = this.#atmosphere.ellipsoid.grown(this.#heights.lowest)
+    const [right, up, forward, ray] = [0, 1, 2, 3].map(() => new Vector3())
+    for (const [n, { camera, place, edge }] of shots.entries()) {
       const [left, top] = [(n % SIDE) * WIDTH, Math.floor(n / SIDE) * HEIGHT]
-      let pixels = 0
+      // Where the lowest ground is the unit sphere.
+      camera.matrixWorld.extractBasis(right, up, forward)
+      const tangent = Math.tan((camera.fov * Math.PI) / 360)
+      right.multiplyScalar(tangent * camera.aspect).divide(radii)
+      up.multiplyScalar(tangent).divide(radii)
+      forward.divide(radii)
+      const position = camera.position.clone().divide(radii)
+      // The horizon of a globe of triangles lies deeper, by their sagitta.
+      const sagitta = (edge * edge * (position.lengthSq() - 1)) / 8
+      const over = position.lengthSq() - 1
+      const surelyOver = position.lengthSq() - (1 - sagitta) ** 2
+      let [pixels, limb] = [0, 0]
       for (let y = 0; y < HEIGHT; y++) {
         for (let x = 0; x < WIDTH; x++) {
-          ray.set((2 * x + 1) / WIDTH - 1, 1 - (2 * y + 1) / HEIGHT, 0.5)
-          ray.unproject(camera).sub(camera.position)
-          if (!(core.intersectRayDistance(camera.position, ray)! > 0)) continue
+          ray.copy(forward).negate()
+          ray.addScaledVector(right, (2 * x + 1) / WIDTH - 1)
+          ray.addScaledVector(up, 1 - (2 * y + 1) / HEIGHT)
+          const down = -ray.dot(position)
+          if (down <= 0 || down * down <= ray.lengthSq() * over) continue
           this.pixels++
-          if (data[4 * ((top + y) * stride + left + x) + 1] === 0) pixels++
+          if (data[4 * ((top + y) * stride + left + x) + 1] !== 0) continue
+          if (down * down > ray.lengthSq() * surelyOver) pixels++
+          else limb++
         }
       }
       this.cameras++
-      if (pixels > 0) this.cracks.push({ ...place, pixels })
+      if (limb > 0 && pixels === 0) this.atLimb++
+      if (pixels > 0) this.cracks.push({ ground: this.ground, ...place, pixels })
     }
-    this.#shots.length = 0
   }
 
   dispose(): void {
     this.#terrain.dispose()
-    this.#target.dispose()
+    for (const target of this.#targets) target.dispose()
     this.#atmosphere.dispose()
   }
 }
 
 /**
- * Looks for cracks from random cameras.
+ * Looks for cracks from random cameras: the first half over the made-up planet, the others over rough waves.
  *
- * @param count - Number of cameras, a multiple of 20.
+ * @param count - Number of cameras, a multiple of 200.
  * @param most - Time after which it ends [s].
+ * @param report - Takes a line of progress.
  */
 export async function findCracks(
   device: HeadlessDevice,
   count: number,
-  most: number
+  most: number,
+  report: (line: string) => void
 ): Promise<CrackSearch> {
-  const renderer = await device.renderer(SIDE * WIDTH, SIDE * HEIGHT, { reversedDepthBuffer: true })
-  renderer.highPrecision = true
-  const hunt = new CrackHunt(renderer)
   const start = performance.now()
   const seconds = (): number => (performance.now() - start) / 1000
-  for (let n = 0; n < count / PER_PLACE && seconds() < most; n++) await hunt.visit(n)
-  await hunt.read()
-  const { cameras, pixels, cracks } = hunt
-  const result = { cameras, pixels, seconds: seconds(), cracks }
-  hunt.dispose()
-  release(renderer)
-  return result
+  const sum = { cameras: 0, pixels: 0, atLimb: 0, cracks: [] as Crack[] }
+  for (const [ground, part, until] of [
+    ['mountains', 0.5, 0.5 * most],
+    ['waves', 0.5, most]
+  ] as const) {
+    const renderer = await device.renderer(SIDE * WIDTH, SIDE * HEIGHT, {
+      reversedDepthBuffer: true,
+      trackTimestamp: false
+    })
+    renderer.highPrecision = true
+    const hunt = new CrackHunt(renderer, ground)
+    let reported = 0
+    const places = Math.round((part * count) / PER_PLACE)
+    for (let n = 0; n < places && seconds() < until; n++) {
+      await hunt.visit(n)
+      if (hunt.cameras < reported + REPORTED) continue
+      reported = hunt.cameras
+      report(
+        `  ${ground}: ${reported} cameras, ${hunt.pages} pages, ${hunt.cracks.length} with gaps, ${seconds().toFixed(0)} s`
+      )
+    }
+    await hunt.finish()
+    sum.cameras += hunt.cameras
+    sum.pixels += hunt.pixels
+    sum.atLimb += hunt.atLimb
+    sum.cracks.push(...hunt.cracks)
+    hunt.dispose()
+    release(renderer)
+  }
+  return { ...sum, seconds: seconds() }
 }
 
 /** Lines of a report. */
-export function crackLines({ cameras, pixels, seconds, cracks }: CrackSearch): string {
+export function crackLines({ cameras, pixels, seconds, cracks, atLimb }: CrackSearch): string {
   const found = cracks.map(
-    ({ longitude, latitude, height, pixels: missing }) =>
-      `  ${missing} pixels from ${longitude}°, ${latitude}°, ${height.toPrecision(6)} m`
+    ({ ground, longitude, latitude, height, pixels: missing }) =>
+      `  ${ground}: ${missing} pixels from ${longitude}°, ${latitude}°, ${height.toPrecision(6)} m`
   )
   return [
-    `cracks         ${cracks.length} of ${cameras} cameras, ${(pixels / 1e6).toFixed(1)} million pixels below the horizon, ${seconds.toFixed(0)} s`,
+    `cracks         ${cracks.length} of ${cameras} cameras, ${(pixels / 1e6).toFixed(1)} million pixels below the horizon, ${seconds.toFixed(0)} s; at the limb alone ${atLimb}`,
     ...found.slice(0, 20)
   ].join('\n')
 }

@@ -93,7 +93,7 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
     return { terrain, vegetation }
   },
   async cracks() {
-    const search = await findCracks(device, 10_000, 400)
+    const search = await findCracks(device, 10_000, 95, log)
     log(crackLines(search))
     return { cracks: search }
   },

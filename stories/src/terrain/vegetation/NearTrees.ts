@@ -44,20 +44,22 @@ export class NearTrees extends Mesh<InstancedBufferGeometry, PlantMaterial> {
     this.frustumCulled = false
   }
 
-  /** Chooses the trees about a viewer. */
-  choose({ x, y, z }: Vector3): void {
-    const [places, looks] = [this.#cells.places.array, this.#cells.looks.array]
+  /** Chooses the trees about a viewer, those out of view too: they cast shadows. */
+  choose(viewer: Vector3): void {
     let n = 0
-    for (let i = 0; i < places.length && n < 4 * MOST; i += 4) {
-      if (places[i + 3] === 0) continue
-      const away = Math.hypot(places[i] - x, places[i + 1] - y, places[i + 2] - z)
-      if (away > this.#reach) continue
+    this.#cells.visit(viewer, this.#reach, (places, looks, i) => {
+      const away = Math.hypot(
+        places[i] - viewer.x,
+        places[i + 1] - viewer.y,
+        places[i + 2] - viewer.z
+      )
+      if (away > this.#reach || n === 4 * MOST) return
       for (let j = 0; j < 4; j++) {
         this.#places.array[n + j] = places[i + j]
         this.#looks.array[n + j] = looks[i + j]
       }
       n += 4
-    }
+    })
     this.geometry.instanceCount = n / 4
     this.#places.needsUpdate = this.#looks.needsUpdate = true
   }

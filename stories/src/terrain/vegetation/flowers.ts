@@ -35,13 +35,13 @@ const STEM = [0.06, 0.11, 0.025] as const
 const HEART = [0.7, 0.42, 0.02] as const
 
 /** Radius of a flower and height of its stem [m], and number of its petals. */
-const RADIUS = 0.017
+const RADIUS = 0.024
 const HEIGHT = 0.36
 const SIDES = 7
 
 /** Radius of a flower that is half a pixel, at a distance of 1 m [m], and distances between which flowers go [m]. */
 const HALF_PIXEL = 0.0008
-const GOES = [28, 42] as const
+export const GOES = [34, 44] as const
 
 /** A flower on its stem: `petal` is 1 at the petals' ends, 0 in its heart, and −1 on the stem. */
 function flower(): BufferGeometry {
@@ -68,7 +68,8 @@ function flower(): BufferGeometry {
 /** Flowers of a meadow. */
 export function createFlowers(cells: PlantCells, uniforms: PlantUniforms): Mesh {
   const material = new PlantMaterial({ side: DoubleSide })
-  const { foot, size, random, other, tint, distance, turned } = plantNodes(uniforms)
+  material.fog = false
+  const { foot, size, random, rank, tint, distance, turned } = plantNodes(uniforms)
   const petal = attribute<'float'>('petal', 'float') as unknown as Float
   const shown = smoothstep(GOES[0], GOES[1], distance).oneMinus().mul(size.min(1))
   const place = positionGeometry as unknown as Vec3
@@ -79,7 +80,7 @@ export function createFlowers(cells: PlantCells, uniforms: PlantUniforms): Mesh 
     place.z.mul(wide)
   )
   const sway = sin(uniforms.time.mul(2.1).add(foot.x).add(random.mul(6))).mul(place.y.mul(0.05))
-  const lean = vec3(place.y.mul(other.sub(0.5)).mul(0.5).add(sway), 0, 0)
+  const lean = vec3(place.y.mul(rank.sub(0.5)).mul(0.5).add(sway), 0, 0)
   material.positionNode = foot.add(turned(tilted.add(lean).mul(shown).mul(size)))
   material.normalNode = varying(
     transformNormalToView(turned(vec3(-0.4, 1, 0).normalize() as never) as never) as unknown as Vec3

@@ -15,6 +15,7 @@ import {
   plantGeometry,
   PlantMaterial,
   plantNodes,
+  thinned,
   type Float,
   type PlantUniforms,
   type Vec3
@@ -25,7 +26,7 @@ const GREEN = [0.05, 0.098, 0.021] as const
 const STRAW = [0.225, 0.19, 0.085] as const
 
 /** Half of a blade's width at its root [m], and that of a pixel at a distance of 1 m: a blade is no narrower. */
-const HALF_WIDTH = 0.0032
+const HALF_WIDTH = 0.004
 const HALF_PIXEL = 0.0004
 
 /** Geometry of a tuft. */
@@ -80,15 +81,22 @@ function tuft({ blades, radius, length, joints }: TuftOptions): BufferGeometry {
   return geometry
 }
 
-/** Tufts near the viewer, and the coarser ones beyond: distances at which they come and go [m]. */
+/**
+ * Tufts near the viewer, and the coarser ones beyond: distances at which they come and go, those over which they thin out [m], and factor on
+ * the least width of their blades.
+ */
 export const GRASSES = {
   near: {
-    tuft: { blades: 18, radius: 0.15, length: [0.12, 0.4], joints: 2 },
-    reach: [-2, -1, 15, 23]
+    tuft: { blades: 15, radius: 0.17, length: [0.13, 0.42], joints: 2 },
+    reach: [-2, -1, 13, 20],
+    thinning: { from: 6, to: 20, least: 0.5 },
+    wide: 1.3
   },
   far: {
-    tuft: { blades: 22, radius: 0.42, length: [0.14, 0.38], joints: 1 },
-    reach: [13, 21, 55, 84]
+    tuft: { blades: 13, radius: 0.45, length: [0.16, 0.4], joints: 1 },
+    reach: [11, 18, 55, 84],
+    thinning: { from: 16, to: 70, least: 0.3 },
+    wide: 1.7
   }
 } as const
 
@@ -102,15 +110,22 @@ export function createGrass(
   cells: PlantCells,
   uniforms: PlantUniforms
 ): Mesh {
-  const { tuft: options, reach } = GRASSES[kind]
+  const { tuft: options, reach, thinning, wide: wider } = GRASSES[kind]
   const material = new PlantMaterial({ side: DoubleSide })
-  const { foot, size, random, other, tint, distance, turned } = plantNodes(uniforms)
+  // Within some metres there is no haze, but for thick mist.
+  material.fog = kind === 'far'
+  const nodes = plantNodes(uniforms)
+  const { foot, size, random, tint, distance, turned } = nodes
   const tip = attribute<'float'>('tip', 'float') as unknown as Float
   const aside = attribute<'vec2'>('aside', 'vec2')
   const [comes, here, leaves, gone] = reach
-  const shown = smoothstep(comes, here, distance).mul(smoothstep(leaves, gone, distance).oneMinus())
+  const shown = smoothstep(comes, here, distance)
+    .mul(smoothstep(leaves, gone, distance).oneMinus())
+    .mul(thinned(thinning, nodes))
+    .toConst()
   const spine = positionGeometry as unknown as Vec3
-  const wide = distance.mul(HALF_PIXEL).max(HALF_WIDTH)
+  // Fewer of them are wider.
+  const wide = distance.mul(HALF_PIXEL * wider).max(HALF_WIDTH)
   const edge = vec3(aside.x, 0, aside.y).mul(wide)
   const gust = sin(
     uniforms.time.mul(1.7).add(foot.x.mul(0.35)).add(foot.z.mul(0.22)).add(random.mul(2))
@@ -123,13 +138,22 @@ export function createGrass(
   material.positionNode = foot.add(turned(scaled)).add(vec3(sway, 0, sway.mul(0.6)).mul(size))
   // As lit as the ground is, but for what leans.
   const normal = vec3(0, 1, 0)
-    .add(outwards.mul(other.mul(1.2).add(0.5)))
+    .add(outwards.mul(random.mul(1.2).add(0.5)))
     .normalize()
   material.normalNode = varying(transformNormalToView(normal as never) as unknown as Vec3)
   const [green, straw] = [GREEN, STRAW].map(([r, g, b]) => vec3(r, g, b))
-  const dry = tint.add(other.sub(0.5).mul(0.35)).clamp(0, 1)
-  const light = mix(0.6, 1.9, tip).mul(random.mul(0.5).add(0.75))
-  material.colorNode = varying(mix(green, straw, dry).mul(light)) as unknown as Vec3
+  const dry = tint.add(random.sub(0.5).mul(0.3)).clamp(0, 1)
+  // Fresh and bluish tufts beside yellowish ones.
+  const fresh = mix(vec3(0.72, 0.86, 1.25), vec3(1.35, 1.08, 0.6), random)
+  // Where they end they are as bright as the ground.
+  const form = kind === 'far' ? smoothstep(leaves * 0.4, gone, distance).oneMinus() : 1
+  const light = mix(1, mix(0.35, 1.75, tip).mul(random.mul(0.5).add(0.75)), form)
+  // Long blades have seeds, which are straw.
+  const seeds = smoothstep(1.45, 1.9, size)
+    .mul(smoothstep(0.62, 0.8, tip))
+    .mul(0.8)
+  const blade = mix(mix(green.mul(fresh), straw, dry), straw, seeds)
+  material.colorNode = varying(blade.mul(light)) as unknown as Vec3
   const mesh = new Mesh(plantGeometry(tuft(options), cells), material)
   mesh.receiveShadow = true
   mesh.frustumCulled = false

@@ -1,9 +1,9 @@
 import { InstancedBufferGeometry, type BufferGeometry } from 'three'
 import { airAtVertices } from '@welkin/atmosphere'
-import { attribute, cos, sin, uniform, vec3 } from 'three/tsl'
+import { attribute, cos, mix, sin, uniform, vec3 } from 'three/tsl'
 import { MeshLambertNodeMaterial, type Node } from 'three/webgpu'
 import { Vector3 } from 'three'
-import type { PlantCells } from './PlantCells'
+import type { PlantCells, Thinning } from './PlantCells'
 
 export type Float = Node<'float'>
 export type Vec3 = Node<'vec3'>
@@ -17,9 +17,9 @@ export interface PlantNodes {
   /** Foot of it [m], and factor on its geometry. */
   readonly foot: Vec3
   readonly size: Float
-  /** Two random numbers in [0, 1), and its tint. */
+  /** A random number and its rank in its cell, both in [0, 1), and its tint. */
   readonly random: Float
-  readonly other: Float
+  readonly rank: Float
   readonly tint: Float
   /** Distance from the viewer [m]. */
   readonly distance: Float
@@ -36,7 +36,7 @@ export function plantNodes({ viewer }: PlantUniforms): PlantNodes {
     foot: place.xyz,
     size: place.w,
     random: look.y,
-    other: look.z,
+    rank: look.z,
     tint: look.w,
     distance: place.xyz.sub(viewer).length().toConst(),
     turned: v => vec3(v.x.mul(cosine).add(v.z.mul(sine)), v.y, v.z.mul(cosine).sub(v.x.mul(sine)))
@@ -51,11 +51,24 @@ export function plantGeometry(
   const all = new InstancedBufferGeometry()
   for (const [name, values] of Object.entries(geometry.attributes)) all.setAttribute(name, values)
   all.setIndex(geometry.index)
-  all.setAttribute('plantPlace', cells.places)
-  all.setAttribute('plantLook', cells.looks)
-  all.instanceCount = cells.places.count
+  cells.add(all)
   return all
 }
+
+/** Rank over which a plant goes where fewer are drawn. */
+const GOING = 0.08
+
+/** Share of a plant's size that is left where fewer of them are drawn. */
+export function thinned({ from, to, least }: Thinning, { rank, distance }: PlantNodes): Float {
+  const kept = mix(1, least, ramp(from, to, distance))
+  return kept.add(GOING).sub(rank).div(GOING).clamp(0, 1)
+}
+
+const ramp = (from: number, to: number, value: Float): Float =>
+  value
+    .sub(from)
+    .div(to - from)
+    .clamp(0, 1)
 
 /** A matte material whose haze is found at vertices, as that of the terrain is. */
 export class PlantMaterial extends MeshLambertNodeMaterial {

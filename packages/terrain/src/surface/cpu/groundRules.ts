@@ -1,3 +1,33 @@
+import { MathUtils } from 'three'
+import {
+  DRY_BEGINS,
+  DRY_BELTS,
+  DRY_CLIMATE,
+  DRY_ENDS,
+  DRY_SNOW,
+  DRY_WOODS,
+  LEAST_DRYNESS,
+  LOWLAND,
+  LOWLAND_DRYNESS,
+  MOIST,
+  OPEN,
+  ROCK_PATCH,
+  ROCK_STEEPNESS,
+  SCREE,
+  SHORE,
+  SHORE_PATCH,
+  SNOW_BY_FOURTH,
+  SNOW_BY_SQUARE,
+  SNOW_LINE,
+  SNOW_OVER,
+  SNOW_PATCH,
+  SNOW_STEEPNESS,
+  SUNNY_SNOW,
+  TREES_BELOW,
+  TREES_END,
+  TREES_OVER_SEA,
+  TREES_PATCH
+} from '../groundConstants'
 import type { OfKinds } from '../maps/groundKinds'
 
 /** A place of the ground, for float64. */
@@ -18,36 +48,42 @@ export interface PlaceOnCPU {
 /** Shares of materials with a sum of 1, desert being sand inland. */
 export type SharesOnCPU = OfKinds<number> & { readonly desert: number }
 
-function smoothstep(start: number, end: number, value: number): number {
-  const t = Math.min(Math.max((value - start) / (end - start), 0), 1)
-  return t * t * (3 - 2 * t)
-}
+const { smoothstep } = MathUtils
 
 /** Shares of the ground's materials on open ground, without stones and blades. Twin of ../tsl/groundRules.ts and groundShares.ts. */
 export function groundShares(place: PlaceOnCPU): SharesOnCPU {
   const { height, overSea, patch, climate, sinLatitude, sinNormal, cosSlope } = place
   const square = sinLatitude ** 2
   const sunny = (sinLatitude - sinNormal) * Math.sign(sinLatitude)
-  const snowLine = 5200 - 2000 * square - 3600 * square ** 2 + 500 * climate + 350 * sunny
+  const snowLine =
+    SNOW_LINE -
+    SNOW_BY_SQUARE * square -
+    SNOW_BY_FOURTH * square ** 2 +
+    DRY_SNOW * climate +
+    SUNNY_SNOW * sunny
   const overSnow = height - snowLine
-  const overTrees = overSnow + 1100 + 350 * patch
-  const subtropical =
-    smoothstep(0.12, 0.4, Math.abs(sinLatitude)) *
-    (1 - smoothstep(0.42, 0.62, Math.abs(sinLatitude)))
-  const dryness = Math.min(Math.max(1.1 * subtropical - 0.35 + 1.4 * climate, 0), 1)
-  const steepness = 1 - cosSlope + 0.05 * patch
-  const lowland = 1 - smoothstep(60, 420, overSea)
-  const moisture = patch - dryness - 1.4 * climate - 0.15 - 0.4 * lowland
+  const overTrees = overSnow + TREES_BELOW + TREES_PATCH * patch
+  const latitude = Math.abs(sinLatitude)
+  const subtropical = smoothstep(latitude, ...DRY_BEGINS) * (1 - smoothstep(latitude, ...DRY_ENDS))
+  const dryness = Math.min(
+    Math.max(DRY_BELTS * subtropical + LEAST_DRYNESS + DRY_CLIMATE * climate, 0),
+    1
+  )
+  const steepness = 1 - cosSlope + ROCK_PATCH * patch
+  const lowland = 1 - smoothstep(overSea, ...LOWLAND)
+  const moisture = patch - dryness - DRY_WOODS * climate - OPEN - LOWLAND_DRYNESS * lowland
   const layers = {
-    snow: smoothstep(-150, 250, overSnow + 420 * patch) * (1 - smoothstep(0.26, 0.42, steepness)),
-    rock: smoothstep(0.13, 0.24, steepness),
-    sand: 1 - smoothstep(2, 9, overSea + 4 * patch),
-    scree: smoothstep(-50, 450, overTrees),
+    snow:
+      smoothstep(overSnow + SNOW_PATCH * patch, ...SNOW_OVER) *
+      (1 - smoothstep(steepness, ...SNOW_STEEPNESS)),
+    rock: smoothstep(steepness, ...ROCK_STEEPNESS),
+    sand: 1 - smoothstep(overSea + SHORE_PATCH * patch, ...SHORE),
+    scree: smoothstep(overTrees, ...SCREE),
     desert: dryness,
     forest:
-      smoothstep(-0.2, 0, moisture) *
-      (1 - smoothstep(-150, 50, overTrees)) *
-      smoothstep(15, 60, overSea)
+      smoothstep(moisture, -MOIST, 0) *
+      (1 - smoothstep(overTrees, ...TREES_END)) *
+      smoothstep(overSea, ...TREES_OVER_SEA)
   }
   const shares = { snow: 0, rock: 0, sand: 0, scree: 0, desert: 0, forest: 0, grass: 0 }
   let left = 1

@@ -1,5 +1,34 @@
 import { float, smoothstep } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
+import {
+  DRY_BEGINS,
+  DRY_BELTS,
+  DRY_CLIMATE,
+  DRY_ENDS,
+  DRY_SNOW,
+  DRY_WOODS,
+  LEAST_DRYNESS,
+  LOWLAND,
+  LOWLAND_DRYNESS,
+  MOIST,
+  OPEN,
+  ROCK_PATCH,
+  ROCK_STEEPNESS,
+  SCREE,
+  SHORE,
+  SHORE_PATCH,
+  SNOW_BY_FOURTH,
+  SNOW_BY_SQUARE,
+  SNOW_LINE,
+  SNOW_OVER,
+  SNOW_PATCH,
+  SNOW_STEEPNESS,
+  SUNNY_SNOW,
+  TREES_BELOW,
+  TREES_END,
+  TREES_OVER_SEA,
+  TREES_PATCH
+} from '../groundConstants'
 import type { OfKinds } from '../maps/groundKinds'
 import type { Grain, GrainPlace } from './grain'
 
@@ -7,22 +36,9 @@ import type { Grain, GrainPlace } from './grain'
 const SPREAD = 0.12
 const MOST_SPREAD = 450
 
-/** Share of the climate in where woods grow: fewer of them where it is dry [–]. Less: land from orbit is of one colour (*Terrain*). */
-const DRY_WOODS = 1.4
-
-/** Part of the patches that is open where it is neither wet nor dry, over half of them [–]. */
-const OPEN = 0.15
-
-/** Moisture that land just above the sea lacks, and heights over it between which it does [m]: open plains below woods. */
-const LOWLAND = { dry: 0.4, from: 60, to: 420 }
-
 /** Deviation of patches, and size of a pixel that shows none of them: a share of it is woods then [m]. */
 const PATCH_DEVIATION = 0.35
 const PATCHES_GONE = 4000
-
-/** Height by which snow lies higher where it is dry, per climate, and on slopes to the equator, per slope [m]. */
-const DRY_SNOW = 500
-const SUNNY_SNOW = 350
 
 /** Height by which snow lies lower in hollows that see nothing of the sky [m], and slope by which more soil holds there. */
 const HOLLOW_SNOW = 700
@@ -82,28 +98,32 @@ export interface GroundClimate {
 export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimate {
   const { height, patch, climate, up, pole } = place
   const northing = up.dot(pole).toConst() as Float
-  const sinLatitude = northing.abs().toConst('sinLatitude')
+  const sinLatitude = northing.abs().toConst()
   const overSea = height.sub(seaLevel).toConst('overSea') as Float
 
-  // Snow lies above 5,200 m at the equator, 3,100 m in the Alps, 1,700 m at 60°, and at sea level near the poles.
-  const square = sinLatitude.mul(sinLatitude).toConst('square')
+  const square = sinLatitude.mul(sinLatitude).toConst()
   // Ground that falls towards the equator has a normal nearer to it than up is.
   const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign()) as unknown as Float
-  const snowLine = float(5200)
-    .sub(square.mul(square.mul(3600).add(2000)))
+  const snowLine = float(SNOW_LINE)
+    .sub(square.mul(square.mul(SNOW_BY_FOURTH).add(SNOW_BY_SQUARE)))
     .add(climate.mul(DRY_SNOW))
     .add(sunny.mul(SUNNY_SNOW))
-    .toConst('snowLine')
+    .toConst()
   const overSnow = height.sub(snowLine).toConst('overSnow') as Float
-  const overTrees = overSnow.add(1100).add(patch.mul(350)).toConst('overTrees') as Float
-  const dryness = smoothstep(0.12, 0.4, sinLatitude)
-    .mul(smoothstep(0.42, 0.62, sinLatitude).oneMinus())
-    .mul(1.1)
-    .sub(0.35)
-    .add(climate.mul(1.4))
+  const overTrees = overSnow
+    .add(TREES_BELOW)
+    .add(patch.mul(TREES_PATCH))
+    .toConst('overTrees') as Float
+  const dryness = smoothstep(...DRY_BEGINS, sinLatitude)
+    .mul(smoothstep(...DRY_ENDS, sinLatitude).oneMinus())
+    .mul(DRY_BELTS)
+    .add(LEAST_DRYNESS)
+    .add(climate.mul(DRY_CLIMATE))
     .clamp(0, 1)
     .toConst('dryness') as Float
-  const lowland = smoothstep(LOWLAND.from, LOWLAND.to, overSea).oneMinus().toConst('lowland')
+  const lowland = smoothstep(...LOWLAND, overSea)
+    .oneMinus()
+    .toConst()
   return { overSea, overSnow, overTrees, sunny, dryness, lowland }
 }
 
@@ -116,48 +136,49 @@ export function groundRules(
   const { patch, climate, cosSlope, hollow } = place
   const { stone, boulder, tuft, crown } = grain
   // A pixel that shows much ground shows its heights, too.
-  const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst('spread')
-  const relief = stone.mul(0.6).add(boulder.mul(0.5)).add(crown.mul(0.6)).toConst('relief')
+  const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst()
+  const relief = stone.mul(0.6).add(boulder.mul(0.5)).add(crown.mul(0.6)).toConst()
   const steepness = cosSlope
     .oneMinus()
-    .add(patch.mul(0.05))
+    .add(patch.mul(ROCK_PATCH))
     .add(relief.mul(0.03))
     .sub(hollow.mul(HOLLOW_SOIL))
-    .toConst('steepness')
+    .toConst()
 
   const lost = grain.footprint.div(PATCHES_GONE).min(1).mul(PATCH_DEVIATION).toConst()
   const moisture = patch
     .sub(dryness)
     .sub(climate.mul(DRY_WOODS))
     .sub(OPEN)
-    .sub(lowland.mul(LOWLAND.dry))
+    .sub(lowland.mul(LOWLAND_DRYNESS))
     .toConst()
   const woods = smoothstep(
-    lost.add(0.2).negate(),
+    lost.add(MOIST).negate(),
     lost,
     moisture.add(tuft.mul(0.12)).add(crown.mul(0.3))
   )
-    .mul(smoothstep(-150, 50, overTrees).oneMinus())
+    .mul(smoothstep(...TREES_END, overTrees).oneMinus())
     // As with beaches: a pixel that shows much ground shows what lies behind the shore.
-    .mul(smoothstep(15, 60, overSea.add(spread)))
+    .mul(smoothstep(...TREES_OVER_SEA, overSea.add(spread)))
     .toConst('woods')
   // Stones come through grass where they are highest.
   const bareness = smoothstep(
-    spread.add(50).negate(),
-    spread.add(450),
+    spread.negate().add(SCREE[0]),
+    spread.add(SCREE[1]),
     overTrees.add(relief.mul(260))
   ).toConst('bareness')
   // A pixel as large as a beach is mostly of what lies behind it.
-  const inland = smoothstep(2, 9, overSea.add(patch.mul(4)).add(relief).add(spread)).toConst(
-    'inland'
-  )
-  const bare = smoothstep(0.13, 0.24, steepness).toConst('bare')
+  const inland = smoothstep(
+    ...SHORE,
+    overSea.add(patch.mul(SHORE_PATCH)).add(relief).add(spread)
+  ).toConst('inland')
+  const bare = smoothstep(...ROCK_STEEPNESS, steepness).toConst('bare')
   const snow = smoothstep(
-    spread.add(150).negate(),
-    spread.add(250),
-    overSnow.add(patch.mul(420)).add(hollow.mul(HOLLOW_SNOW)).sub(relief.mul(160))
+    spread.negate().add(SNOW_OVER[0]),
+    spread.add(SNOW_OVER[1]),
+    overSnow.add(patch.mul(SNOW_PATCH)).add(hollow.mul(HOLLOW_SNOW)).sub(relief.mul(160))
   )
-    .mul(smoothstep(0.26, 0.42, steepness).oneMinus())
+    .mul(smoothstep(...SNOW_STEEPNESS, steepness).oneMinus())
     .toConst('snow')
   const layers = { snow, bare, inland, bareness, dryness, woods }
   return { layers, relief, spread }
