@@ -105,6 +105,7 @@ export class PrecipitationShafts {
    */
   update({ layers, depthScale }: CloudField, { up }: AtmosphereView): number {
     let [ceiling, floor, most] = [NOWHERE, Infinity, 0]
+    let shortest = LONGEST_STEP
     let [firstLayer, endLayer] = [CloudLayers.maxLayers, 0]
     const state: number[] = []
     for (const [i, { parameters }] of [...layers].entries()) {
@@ -129,6 +130,9 @@ export class PrecipitationShafts {
       floor = Math.min(floor, fallFloor(baseAltitude, virgaDepth))
       firstLayer = Math.min(firstLayer, i)
       endLayer = i + 1
+      const { weather, shape } = layerPeriods(parameters)
+      // Fine streaks of weak virga are seen beside a strong shower, too.
+      shortest = Math.min(shortest, STEP * STREAK_WIDTH * shape)
       if (rate <= most) continue
       most = rate
       const column = meanColumnOf(parameters, depthScale.value)
@@ -136,13 +140,12 @@ export class PrecipitationShafts {
       depth.value = density * thickness * column.insideDensity * depthScale.value
       layered.value = MathUtils.smoothstep(coverage, ...GROWING_TOGETHER)
       base.value = baseAltitude
-      const { weather, shape } = layerPeriods(parameters)
       period.value = weather
-      this.#shortest.value = Math.min(STEP * STREAK_WIDTH * shape, LONGEST_STEP)
       this.#width.value = MathUtils.lerp(period.value * CLOUD_RADIUS, DECK_WIDTH, layered.value)
     }
     this.#ceiling.value = ceiling
     this.#floor.value = Math.max(floor, NOWHERE)
+    this.#shortest.value = shortest
     this.#firstLayer.value = Math.min(firstLayer, endLayer)
     this.#endLayer.value = endLayer
     if (state.some((value, i) => value !== this.#state[i])) this.#version++
