@@ -4,7 +4,7 @@ import { skyShareFit } from '../../src/light/cpu/skyShare'
 import { ISOLATED_DEPTH } from '../../src/light/tsl/cloudLight'
 import { sampleBeamSource, sampleSkySource } from './cloudLightTable'
 import { aureolePhase, cloudPhase } from './cloudPhase'
-import { heads } from './heads'
+import { facing } from './facing'
 
 /** Depths about a sample in its cloud. All depths are scaled optical depths τ′ = `depthScale` τ. */
 export interface CloudSourceSample {
@@ -82,8 +82,7 @@ export function cloudSource(
   table: Float32Array,
   sample: CloudSourceSample
 ): number {
-  const { depthToLight, depthToCamera, layered, cosViewLight } = sample
-  const { leak, facing, glow } = heads(sample)
+  const { depthToLight, depthThrough, depthToCamera, layered, cosViewLight } = sample
   const { depthScale, moments } = scalePhase(phase)
   const sign = sample.cosLight < 0 ? -1 : 1
   // The slab's normal: up (or down, under a light below the horizon) for decks, towards the light for isolated clouds.
@@ -93,8 +92,8 @@ export function cloudSource(
   )
   const cosLight = clamp((layered * sign * sample.cosLight + 1 - layered) / length, 0, 1)
   const cosView = (layered * sign * sample.cosView + (1 - layered) * cosViewLight) / length
-  const thickness = leak.depthThrough * cosLight
-  const depth = clamp(leak.depthToLight * cosLight, 0, thickness)
+  const thickness = depthThrough * cosLight
+  const depth = clamp(depthToLight * cosLight, 0, thickness)
   const m = sampleBeamSource(table, depth, thickness, cosLight)
   const along = cosViewLight - cosView * cosLight
   const sines = (1 - cosView ** 2) * (1 - cosLight ** 2)
@@ -104,13 +103,13 @@ export function cloudSource(
     (m.s20 * (3 * cosView ** 2 - 1)) / 2 +
     (m.s11 + m.s21 * cosView) * along +
     m.s22 * (2 * along ** 2 - sines)
-  const kept = facing * lateralLeak(leak, 1 - moments[1]) ** (1 - layered)
+  const leak = lateralLeak(sample, 1 - moments[1]) ** (1 - layered)
   const exact = cloudPhase(phase, cosViewLight)
   const towards = clamp(10 * cosViewLight - 9, 0, 1)
   const aureole = aureolePhase(phase, cosViewLight, depthToLight + depthToCamera)
   const single = exact + (aureole - exact) * towards
   const scattered = (phase.scatteringAlbedo / depthScale) * single * Math.exp(-depthToLight)
-  return Math.max(diffuse * kept, 0) + glow + scattered
+  return Math.max(diffuse * leak * facing(sample), 0) + scattered
 }
 
 /** Depths about a sample between sky and ground. Depths are scaled optical depths along the vertical. */

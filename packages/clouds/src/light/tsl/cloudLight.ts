@@ -4,7 +4,7 @@ import { skyShareFit as fit } from '../cpu/skyShare'
 import { slabTableForm } from '../cpu/slabTableForm'
 import type { Float, Vec2 } from '../../tsl-types'
 import { singlePhase } from './cloudPhase'
-import { heads } from './heads'
+import { facing } from './facing'
 import { lateralLeak, type LeakNodes } from './lateralLeak'
 import { legendreSeries, readLayer, slabCoordinates } from './slabTable'
 
@@ -25,7 +25,8 @@ export interface CloudSourceNodes extends LeakNodes {
  * extinction, for unit irradiance above the cloud [1/sr].
  *
  * Light scattered once has the exact phase function and scaled depths (TMS); light scattered more than
- * once comes from the table of slabs, less what an isolated cloud loses through its sides, and by its heads. March
+ * once comes from the table of slabs, less what an isolated cloud loses through its sides, and by the cosine of the light
+ * on the faces of a thick one. March
  * in scaled depths: L = ∫ S e^{−τ′} dτ′, with the same e^{−τ′} for what is behind the cloud.
  *
  * Twin: test/twins/cloudLight.ts
@@ -35,9 +36,8 @@ export interface CloudSourceNodes extends LeakNodes {
  *   intensity calculations in moderately thick atmospheres using a truncation approximation"
  */
 export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float {
-  const { depthToLight, depthToCamera, layered, cosViewLight } = sample
+  const { depthToLight, depthThrough, depthToCamera, layered, cosViewLight } = sample
   return Fn(() => {
-    const { leak, facing, glow } = heads(sample, cosViewLight)
     const isolated = layered.oneMinus().toConst()
     // The slab's normal: up (or down, under a light below the horizon) for decks, towards the light for isolated clouds.
     const side = sample.cosLight.lessThan(0).select(-1, 1).mul(layered).toConst()
@@ -50,8 +50,8 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
       .toConst()
     const cosSlabLight = lift.add(isolated).mul(scale).clamp().toConst()
     const cosView = side.mul(sample.cosView).add(isolated.mul(cosViewLight)).mul(scale).toConst()
-    const thickness = leak.depthThrough.mul(cosSlabLight).toConst()
-    const depth = leak.depthToLight.mul(cosSlabLight).clamp(0, thickness).toConst()
+    const thickness = depthThrough.mul(cosSlabLight).toConst()
+    const depth = depthToLight.mul(cosSlabLight).clamp(0, thickness).toConst()
     const uv = slabCoordinates(depth, thickness).toConst()
     const layer = cosSlabLight.mul(slabTableForm.lightAngles - 1).toConst()
     const first = readLayer(light, uv, layer)
@@ -65,7 +65,8 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
     const single = singlePhase(light, cosViewLight, path)
       .mul(light.scatteringScale)
       .mul(depthToLight.negate().exp())
-    return diffuse.mul(lateralLeak(light, leak).mul(facing)).max(0).add(glow).add(single)
+    const kept = lateralLeak(light, sample).mul(facing(sample, cosViewLight))
+    return diffuse.mul(kept).max(0).add(single)
   })()
 }
 
