@@ -1,10 +1,10 @@
 import { scalePhase, type CloudPhaseParameters } from '../../src/light/cpu/cloudPhase'
+import { facingFit } from '../../src/light/cpu/facing'
 import { lateralLeakFit as fit } from '../../src/light/cpu/lateralLeak'
 import { skyShareFit } from '../../src/light/cpu/skyShare'
 import { ISOLATED_DEPTH } from '../../src/light/tsl/cloudLight'
 import { sampleBeamSource, sampleSkySource } from './cloudLightTable'
 import { aureolePhase, cloudPhase } from './cloudPhase'
-import { facing } from './facing'
 
 /** Depths about a sample in its cloud. All depths are scaled optical depths τ′ = `depthScale` τ. */
 export interface CloudSourceSample {
@@ -69,6 +69,20 @@ export function lateralLeak(sample: CloudSourceSample, oneMinusAsymmetry: number
     openness += fit.vertical * (escape(Math.sqrt(above * below)) - escape(own))
   }
   return Math.exp(exponent - openness * resolved)
+}
+
+/** Factor of light by its cosine on the faces of thick isolated clouds, in float64. Twin of the shader function. */
+function facing(sample: CloudSourceSample): number {
+  const { depthToLight, depthThrough, layered, viewChord, resolved = 1, cosViewLight } = sample
+  if (viewChord === undefined) return 1
+  const weight =
+    (depthThrough ** 4 / (depthThrough ** 4 + facingFit.thick ** 4)) * (1 - layered) * resolved
+  const a = 1 / (depthToLight + facingFit.least)
+  const b = 1 / (viewChord[0] + facingFit.least)
+  const cosine = Math.min(Math.max(-cosViewLight, -facingFit.parallel), facingFit.parallel)
+  const gradient = (a * a + b * b - 2 * a * b * cosine) / (1 - cosine ** 2)
+  const onFace = a / Math.sqrt(Math.max(gradient, a * a))
+  return Math.exp(weight * facingFit.cosine * (onFace - 0.5))
 }
 
 /**

@@ -6,7 +6,7 @@ import type { LeakNodes } from './lateralLeak'
 /**
  * Factor of light scattered more than once in thick isolated clouds, by the cosine of the light on their faces. A face's normal is
  * the gradient of depth, whose parts along two lines are known: 1 over the depth to the light, and 1 over that to the camera.
- * 1 without a view chord. Twin: test/twins/facing.ts
+ * 1 without a view chord. Twin: test/twins/cloudLight.ts
  */
 export function facing(sample: LeakNodes, cosViewLight: Float): Float {
   const { depthToLight, depthThrough, layered, viewChord, resolved = float(1) } = sample
