@@ -1,4 +1,5 @@
 import { scalePhase, type CloudPhaseParameters } from '../../src/light/cpu/cloudPhase'
+import { facingFit } from '../../src/light/cpu/facing'
 import { lateralLeakFit as fit } from '../../src/light/cpu/lateralLeak'
 import { skyShareFit } from '../../src/light/cpu/skyShare'
 import { ISOLATED_DEPTH } from '../../src/light/tsl/cloudLight'
@@ -70,6 +71,20 @@ export function lateralLeak(sample: CloudSourceSample, oneMinusAsymmetry: number
   return Math.exp(exponent - openness * resolved)
 }
 
+/** Factor of light by its cosine on the faces of thick isolated clouds, in float64. Twin of the shader function. */
+function facing(sample: CloudSourceSample): number {
+  const { depthToLight, depthThrough, layered, viewChord, resolved = 1, cosViewLight } = sample
+  if (viewChord === undefined) return 1
+  const weight =
+    (depthThrough ** 4 / (depthThrough ** 4 + facingFit.thick ** 4)) * (1 - layered) * resolved
+  const a = 1 / (depthToLight + facingFit.least)
+  const b = 1 / (viewChord[0] + facingFit.least)
+  const cosine = Math.min(Math.max(-cosViewLight, -facingFit.parallel), facingFit.parallel)
+  const gradient = (a * a + b * b - 2 * a * b * cosine) / (1 - cosine ** 2)
+  const onFace = a / Math.sqrt(Math.max(gradient, a * a))
+  return Math.exp(weight * facingFit.cosine * (onFace - 0.5))
+}
+
 /**
  * Source function of sun- or moonlight along a view ray, all orders of scattering: radiance per scaled
  * extinction for unit irradiance above the cloud [1/sr]. Float64 twin of the shader function.
@@ -108,7 +123,7 @@ export function cloudSource(
   const aureole = aureolePhase(phase, cosViewLight, depthToLight + depthToCamera)
   const single = exact + (aureole - exact) * towards
   const scattered = (phase.scatteringAlbedo / depthScale) * single * Math.exp(-depthToLight)
-  return Math.max(diffuse * leak, 0) + scattered
+  return Math.max(diffuse * leak * facing(sample), 0) + scattered
 }
 
 /** Depths about a sample between sky and ground. Depths are scaled optical depths along the vertical. */

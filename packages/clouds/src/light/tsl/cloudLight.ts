@@ -4,6 +4,7 @@ import { skyShareFit as fit } from '../cpu/skyShare'
 import { slabTableForm } from '../cpu/slabTableForm'
 import type { Float, Vec2 } from '../../tsl-types'
 import { singlePhase } from './cloudPhase'
+import { facing } from './facing'
 import { lateralLeak, type LeakNodes } from './lateralLeak'
 import { legendreSeries, readLayer, slabCoordinates } from './slabTable'
 
@@ -24,7 +25,8 @@ export interface CloudSourceNodes extends LeakNodes {
  * extinction, for unit irradiance above the cloud [1/sr].
  *
  * Light scattered once has the exact phase function and scaled depths (TMS); light scattered more than
- * once comes from the table of slabs, less what an isolated cloud loses through its sides. March
+ * once comes from the table of slabs, less what an isolated cloud loses through its sides, and by the cosine of the light
+ * on the faces of a thick one. March
  * in scaled depths: L = ∫ S e^{−τ′} dτ′, with the same e^{−τ′} for what is behind the cloud.
  *
  * Twin: test/twins/cloudLight.ts
@@ -63,7 +65,8 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
     const single = singlePhase(light, cosViewLight, path)
       .mul(light.scatteringScale)
       .mul(depthToLight.negate().exp())
-    return diffuse.mul(lateralLeak(light, sample)).max(0).add(single)
+    const kept = lateralLeak(light, sample).mul(facing(sample, cosViewLight))
+    return diffuse.mul(kept).max(0).add(single)
   })()
 }
 

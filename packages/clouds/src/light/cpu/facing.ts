@@ -1,0 +1,16 @@
+/**
+ * Light by the cosine of the sun on the faces of thick isolated clouds, which takes the place of even white: what a face turned to
+ * the light has over one that it grazes. It comes in as through⁴ / (through⁴ + thick⁴), with the scaled depth through the cloud.
+ *
+ * Fitted to Monte-Carlo solutions of the sunlit places that are seen in a simulated thunderstorm, under suns over 14°: their
+ * correlation with the truth goes from 0.57 to about 0.66. In simulated cumulus it hardly acts.
+ */
+export const facingFit = {
+  thick: 30,
+  /** Logarithm of the ratio between both. */
+  cosine: 1.2,
+  /** Added to depths whose inverses tell how a face is turned: steps see nothing finer. */
+  least: 0.3,
+  /** Largest cosine between light and view that counts there: lines that close to each other tell nothing. */
+  parallel: 0.8
+} as const
