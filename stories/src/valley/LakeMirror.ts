@@ -55,6 +55,9 @@ export class LakeMirror {
   /** Part of the screen's height that a radian covers, and 1 once there is a picture. */
   readonly #scale = uniform(1)
   readonly #isDrawn = uniform(0)
+  /** Luminance scale of the picture that was kept, and that of the next one over it. */
+  #kept = 1
+  readonly #gain = uniform(1)
 
   /** @param picture - Light of the last frame, and distance along the camera's axis in alpha, up to {@link SKY_DEPTH}. */
   constructor(picture: TextureNode) {
@@ -68,8 +71,17 @@ export class LakeMirror {
     renderer.initRenderTarget(this.#target)
   }
 
-  /** Keeps the picture that was just drawn, and its camera. */
-  update(renderer: Renderer, camera: PerspectiveCamera): void {
+  /**
+   * Has the mirror image in the luminance scale of the frame that is drawn next: from night to noon it falls by a factor of 10⁵
+   * within a frame. From noon to night the image stays as bright as it was shown, or else noon would dazzle.
+   */
+  scaleTo(luminanceScale: number): void {
+    this.#gain.value = Math.min(luminanceScale / this.#kept, 1)
+  }
+
+  /** Keeps the picture that was just drawn in a luminance scale, and its camera. */
+  update(renderer: Renderer, camera: PerspectiveCamera, luminanceScale: number): void {
+    this.#kept = luminanceScale
     const { width, height } = this.#picture.value.image as { width: number; height: number }
     this.#target.setSize(Math.ceil(width / 2), Math.ceil(height / 2))
     this.#pass.render(renderer, this.#target)
@@ -132,7 +144,7 @@ export class LakeMirror {
       // What is too small for ripples stretches the image upwards.
       const stretch = vec2(0, roughness.mul(roughness).mul(this.#scale))
       const light = [-1, 0, 1].map(part => this.#read(hit.xy.add(stretch.mul(part))).rgb)
-      const mean = light[0].add(light[1].mul(2)).add(light[2]).mul(0.25)
+      const mean = light[0].add(light[1].mul(2)).add(light[2]).mul(this.#gain.mul(0.25))
       return vec4(mean, isHit.mul(fade).mul(isAhead).mul(this.#isDrawn))
     })().toVar()
   }

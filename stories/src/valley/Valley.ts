@@ -286,12 +286,13 @@ export class Valley {
     setLit(this.#nightSky, isNight)
     setLit(this.#sun, elevation > SUNLIGHT)
     this.#village.light(share, luminanceScale)
+    this.#mirror.scaleTo(luminanceScale)
     const { autoClear } = this.#renderer
     this.#renderer.autoClear = false // every pixel of the canvas is drawn: passes before it clear for themselves
     this.pipeline.render()
     this.#finish.afterDrawn()
     this.#renderer.autoClear = autoClear
-    this.#mirror.update(this.#renderer, this.camera)
+    this.#mirror.update(this.#renderer, this.camera, luminanceScale)
   }
 
   /** Time of the water's waves and the clouds' drift [s]. */
