@@ -73,10 +73,9 @@ export function lateralLeak(sample: CloudSourceSample, oneMinusAsymmetry: number
 
 /** Factor of light by its cosine on the faces of thick isolated clouds, in float64. Twin of the shader function. */
 function facing(sample: CloudSourceSample): number {
-  const { depthToLight, depthThrough, layered, viewChord, resolved = 1, cosViewLight } = sample
+  const { depthToLight, depthThrough, layered, viewChord, cosViewLight } = sample
   if (viewChord === undefined) return 1
-  const weight =
-    (depthThrough ** 4 / (depthThrough ** 4 + facingFit.thick ** 4)) * (1 - layered) * resolved
+  const weight = (depthThrough ** 4 / (depthThrough ** 4 + facingFit.thick ** 4)) * (1 - layered)
   const a = 1 / (depthToLight + facingFit.least)
   const b = 1 / (viewChord[0] + facingFit.least)
   const cosine = Math.min(Math.max(-cosViewLight, -facingFit.parallel), facingFit.parallel)

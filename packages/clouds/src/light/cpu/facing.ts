@@ -12,5 +12,7 @@ export const facingFit = {
   /** Added to depths whose inverses tell how a face is turned: steps see nothing finer. */
   least: 0.3,
   /** Largest cosine between light and view that counts there: lines that close to each other tell nothing. */
-  parallel: 0.8
+  parallel: 0.8,
+  /** Footprints over which faces are lost in the mean [m]. Greater: storms are darker from 100 km than from 1,000 km. */
+  footprints: [40, 120]
 } as const

@@ -4,12 +4,12 @@ import { skyShareFit as fit } from '../cpu/skyShare'
 import { slabTableForm } from '../cpu/slabTableForm'
 import type { Float, Vec2 } from '../../tsl-types'
 import { singlePhase } from './cloudPhase'
-import { facing } from './facing'
-import { lateralLeak, type LeakNodes } from './lateralLeak'
+import { facing, type FacingNodes } from './facing'
+import { lateralLeak } from './lateralLeak'
 import { legendreSeries, readLayer, slabCoordinates } from './slabTable'
 
 /** Depths about a sample in its cloud. All depths are scaled optical depths τ′ = `light.depthScale` τ. */
-export interface CloudSourceNodes extends LeakNodes {
+export interface CloudSourceNodes extends FacingNodes {
   /** Depth from the viewpoint to the sample, in the cloud; left out, the aureole is sharper than it should be. */
   depthToCamera?: Float
   /** The light against the local up. */

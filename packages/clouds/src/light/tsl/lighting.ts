@@ -1,8 +1,9 @@
 import { horizontalIrradiance, transmittanceToLight } from '@welkin/atmosphere'
-import { If, float, mix } from 'three/tsl'
+import { If, float, mix, smoothstep } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import { footprintOf, type CloudSample } from '../../density/tsl/sample'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
+import { facingFit } from '../cpu/facing'
 import { lateralLeakFit as fit } from '../cpu/lateralLeak'
 import { cloudAmbientShares, cloudSource } from './cloudLight'
 import { localDepths } from './localDepths'
@@ -54,7 +55,8 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
   const depthBelow = depths.below.mul(scale).toConst() as Float
   const { top, base } = shaded.layers
   // Clouds are about as wide as their layer is thick.
-  const width = footprintOf(context.field, sample).div(top.sub(base).max(1))
+  const footprint = footprintOf(context.field, sample).toConst() as Float
+  const width = footprint.div(top.sub(base).max(1))
   const resolved = width.oneMinus().clamp().toConst() as Float
   const height = source.cosine.abs()
   const unresolved = height.mul(fit.unresolvedDiameterHigh).add(fit.unresolvedDiameter)
@@ -69,7 +71,8 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     cosViewLight,
     viewChord: [depthToCamera, depthBehind] as const,
     verticalChord: [depthAbove, depthBelow] as const,
-    resolved: mix(fit.unresolvedChords, 1, resolved) as Float
+    resolved: mix(fit.unresolvedChords, 1, resolved) as Float,
+    faces: smoothstep(...facingFit.footprints, footprint).oneMinus() as Float
   }
   const direct = cloudSource(light, lit)
   const fine = light.fineStructure?.({ ...lit, altitude: sample.altitude })
