@@ -57,7 +57,7 @@ export const heightForm = {
    * Inversion: height in the layer from which more is needed, in [0, 1], and how much, per square of the
    * height above it. Weaker: single towers stand out at the layer's top, cut off by it (*Cumulus*).
    */
-  inversion: 0.68,
+  inversion: 0.72,
   inversionStrength: 17,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
   grown: 0.73,
@@ -84,9 +84,9 @@ export const heightForm = {
 /** Constants of billows and detail: tsl/billows.ts. */
 export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
-  coarse: 0.85,
-  fine: 1.5,
-  detail: 0.36,
+  coarse: 0.76,
+  fine: 1.57,
+  detail: 0.48,
   /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
   coarseGrowth: 0.337,
   fineGrowth: 0.2,
@@ -94,7 +94,7 @@ export const billowForm = {
    * Strength from which on fine billows are whole, and range below it over which they set in [–]: bodies have
    * them, crumbs do not. Lower: crumbs float about clouds (*Cumulus*).
    */
-  fineFrom: 0.1,
+  fineFrom: 0.02,
   fineOver: 0.5,
   /**
    * Strength of columns over which all their billows grow weaker, and the factor they end at [–]: only the top
@@ -118,15 +118,15 @@ export const densityForm = {
    * Strength over which density rises at crisp edges, and the factor for wholly soft ones [–]. Greater: clouds of wool; smaller:
    * of plaster (*Cumulus*).
    */
-  crispEdge: 0.2,
+  crispEdge: 0.15,
   softEdge: 12,
   /** Softer edges at the base than at the top: factor of their width less 1 [–]. 0: bases like tops (*Cumulus*). */
-  softerBase: 4,
+  softerBase: 9.2,
   /**
    * Density of cloud just inside its edges, and strength by which it is full [–]: mixed air. Smaller density, or greater strength:
    * dull, see-through heads (*Cumulus*).
    */
-  edgeDensity: 0.92,
+  edgeDensity: 0.97,
   core: 0.66,
   /**
    * Factor of the density of what only billows make cloud, and the strength of columns without them over which
