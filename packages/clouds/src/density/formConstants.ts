@@ -16,7 +16,7 @@ export const strengthForm = {
    * the last: holes in an overcast (*Presets*).
    */
   offset: -0.13,
-  coverageOffset: 0.59,
+  coverageOffset: 0.62,
   fullCoverageExcess: 1.7,
   /**
    * Offset where levels of detail have lost the billows, for shape amount 1 [–], and the unresolved
