@@ -106,20 +106,32 @@ function runStep({ id, script = id, args = [], reporter }, isShown) {
 function readCounts(file, ok) {
   let passed = ok ? 1 : 0
   let failed = 0
+  let failures = []
   try {
     const counts = JSON.parse(readFileSync(file, 'utf8'))
     passed = counts.passed ?? counts.numPassedTests
     failed = counts.failed ?? counts.numFailedTests
+    failures = counts.failures ?? vitestFailures(counts)
   } catch {
     // The step counts nothing, or ended before it could.
   }
-  return { passed, failed: ok ? failed : Math.max(failed, 1) }
+  return { passed, failed: ok ? failed : Math.max(failed, 1), failures }
+}
+
+/** Names of the failed tests in vitest's JSON report, each with the first line of its message. */
+function vitestFailures({ testResults }) {
+  return testResults
+    .flatMap(({ assertionResults }) => assertionResults)
+    .filter(({ status }) => status === 'failed')
+    .map(({ fullName, failureMessages }) => `${fullName}\n${failureMessages[0]?.split('\n')[0]}`)
 }
 
 const seconds = since => `${((performance.now() - since) / 1000).toFixed(1)} s`
 const begin = performance.now()
 const summary = []
 const totals = { passed: 0, failed: 0 }
+/** What failed, again at the end: a long log is often read from there. */
+const allFailures = []
 
 /** Runs steps one after the other. */
 async function runSteps(own, isShown) {
@@ -127,10 +139,11 @@ async function runSteps(own, isShown) {
     const title = `\n━━ ${step.title} ━━`
     if (isShown) console.log(title)
     const start = performance.now()
-    const { ok, passed, failed, output } = await runStep(step, isShown)
+    const { ok, passed, failed, failures, output } = await runStep(step, isShown)
     if (!isShown) console.log(`${title}\n${output.trimEnd()}`)
     totals.passed += passed
     totals.failed += failed
+    allFailures.push(...failures.map(failure => `${step.title}: ${failure}`))
     const mark = ok && failed === 0 ? '✓' : '✗'
     summary.push(`${mark} ${step.title.padEnd(20)} ${passed} ok, ${failed} not, ${seconds(start)}`)
   }
@@ -154,5 +167,6 @@ for (const lanes of groupsOf(wanted)) {
 
 rmSync(countsFolder, { recursive: true, force: true })
 console.log(`\n━━ Summary ━━\n${summary.join('\n')}\ntotal ${seconds(begin)}\n`)
+for (const failure of allFailures) console.log(`✗ ${failure.replace(/\n/g, '\n    ')}\n`)
 console.log(`${totals.passed} passed, ${totals.failed} failed`)
 process.exitCode = totals.failed === 0 ? 0 : 1

@@ -13,6 +13,8 @@ const paint = (code: number, text: string): string =>
 export class Report {
   passed = 0
   failed = 0
+  /** What failed and why, for the summary of `npm test`. */
+  private readonly failures: string[] = []
 
   pass(name: string, detail = ''): void {
     this.passed++
@@ -21,6 +23,7 @@ export class Report {
 
   fail(name: string, reason: string): void {
     this.failed++
+    this.failures.push(`${name}\n${reason}`)
     console.log(`  ${paint(31, '✗')} ${name}`)
     console.log(reason.replace(/^/gm, '      '))
   }
@@ -33,7 +36,7 @@ export class Report {
   /** Sets the process's exit code; nothing checked counts as a failure. */
   finish(): void {
     if (this.passed + this.failed === 0) this.fail('found a test to run', 'no test matched')
-    const counts = { passed: this.passed, failed: this.failed }
+    const counts = { passed: this.passed, failed: this.failed, failures: this.failures }
     const file = process.env.WELKIN_COUNTS
     if (file !== undefined) writeFileSync(file, JSON.stringify(counts))
     if (this.failed > 0) process.exitCode = 1
