@@ -9,6 +9,8 @@ import {
 } from '../../../packages/clouds/src/lightning/channel'
 import { flashCurve, lightBetween } from '../../../packages/clouds/src/lightning/flashCurve'
 import { OPEN, REACH } from '../../../packages/clouds/src/lightning/StormDensity'
+import { LEAST_TRANSMITTANCE } from '../../../packages/clouds/src/light/tsl/lighting'
+import { POINTS } from '../../../packages/clouds/src/march/tsl/seenPoints'
 import { seeded } from '../../../packages/clouds/src/lightning/random'
 import { meanInverseSquare } from '../../../packages/clouds/src/lightning/tsl/lineLight'
 import { random } from '../harness/atmosphere'
@@ -44,8 +46,8 @@ const SEED = 9
 /** Steps of the fog's height over which its density is summed up. */
 const HEIGHTS = 400
 
-/** Scaled depths of the fog from its base up to even heights: that of its ends is less. */
-async function depthsUpwards({ renderer, node }: CloudView): Promise<number[]> {
+/** Scaled depths of the fog from its base up to even heights, north of the camera [m]: that of its ends is less. */
+async function depthsUpwards({ renderer, node }: CloudView, north: number): Promise<number[]> {
   const { field } = node
   const [base, thickness] = [fog.baseAltitude!, fog.topAltitude! - fog.baseAltitude!]
   const altitudes = Array.from(
@@ -57,7 +59,8 @@ async function depthsUpwards({ renderer, node }: CloudView): Promise<number[]> {
     altitudes.map(altitude => [altitude]),
     ({ x: altitude }) => {
       const { up, height } = field.view
-      const offset = up.mul(altitude.sub(height))
+      const northward = vec3(0, 0, 1).sub(up.mul(up.z)).normalize()
+      const offset = up.mul(altitude.sub(height)).add(northward.mul(north)).toConst()
       return cloudExtinction(field, { offset, altitude, up, distance: float(3000) }, false)
     }
   )
@@ -86,6 +89,8 @@ function meanWayOut(height: number, depths: readonly number[]): number {
 gpuTest('fog glows about a flash as in float64, and not before or after it', t =>
   inFog(t, async view => {
     const { node, atmosphere, camera, scene } = view
+    // At night: half floats beside daylight would round a glow away.
+    atmosphere.setSunAngles(-30, 150)
     const before = await view.draw(FRAMES)
     const storm = lightning(node, { limit: null, exposure: EXPOSURE, time: 0, seed: SEED })
     view.show(node)
@@ -108,27 +113,31 @@ gpuTest('fog glows about a flash as in float64, and not before or after it', t =
     )
     const light = lightBetween(flashCurve('cloud', numbers), 0, EXPOSURE).all
     const power = (light / EXPOSURE) * atmosphere.luminanceScale
-    // Points seen through fog: at −ln(1 − u)/σ′ for even parts u of the light. East is +x, north −z, up +y there.
-    const scaled = fog.density! * node.field.depthScale.value
+    // Mean places of the strata that stand for a ray in uniform fog, which is opaque from `LEAST_TRANSMITTANCE` on. East is +x, north −z, up +y there.
+    const depths = await depthsUpwards(view, -at.z)
+    const meanOut = meanWayOut(stem[2][2], depths)
+    // Of the even middle [1/m].
+    const [low, high] = [0.5 * HEIGHTS, 0.6 * HEIGHTS]
+    const scaled = (depths[high] - depths[low]) / (0.1 * (fog.topAltitude! - fog.baseAltitude!))
+    const depthSum = (opacity: number): number => opacity + (1 - opacity) * Math.log(1 - opacity)
     let sum = 0
-    const parts = 8
-    for (let part = 0; part < parts; part++) {
-      const seen = -Math.log(1 - (part + 0.5) / parts) / scaled
+    for (let stratum = 0; stratum < POINTS; stratum++) {
+      const [from, to] = [stratum, stratum + 1].map(i => (i / POINTS) ** 2)
+      const end = Math.min(to, 1 - LEAST_TRANSMITTANCE)
+      const seen = (depthSum(end) - depthSum(from)) / (end - from) / scaled
       const points = stem.map(([e, n, u]): Point => [
         e + at.x,
         u - camera.position.y,
         -n + at.z + seen
       ])
+      let line = 0
       for (let i = 1; i < points.length; i++)
-        sum += meanInverseSquareOf(points[i - 1], points[i], 250) / (points.length - 1) / parts
+        line += meanInverseSquareOf(points[i - 1], points[i], 250) / (points.length - 1)
+      const out = meanOut / (scaled * Math.hypot(...points[2]) + OPEN)
+      sum += line * out * (to - from)
     }
     const [r, g, b] = CHANNEL_COLOR
-    const source = stem[2]
-    const seen = 1 / scaled
-    const way = [-at.x - source[0], at.z + seen - source[1], camera.position.y - source[2]]
-    const depth = scaled * Math.hypot(...way)
-    const out = meanWayOut(source[2], await depthsUpwards(view)) / (depth + OPEN)
-    const expected = (((r + g + b) / 3) * power * sum * out) / (4 * Math.PI ** 2)
+    const expected = (((r + g + b) / 3) * power * sum) / (4 * Math.PI ** 2)
     const added = middle(lit) - middle(before)
     t.note(`${added.toExponential(3)} for ${expected.toExponential(3)}`)
     expectClose([added], [expected], { relative: 0.05 }, 'glow')

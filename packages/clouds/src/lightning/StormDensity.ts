@@ -76,7 +76,10 @@ export class StormDensity {
           const aside = z.mul(z).oneMinus().sqrt()
           const way = vec3(aside.mul(angle.cos()), aside.mul(angle.sin()), z)
           const end = this.#source.add(way.mul(REACH)).toConst() as Vec3
-          const depth = this.#depthTo(end, SAMPLES_OUT, part => ({ part, slope: 1 }))
+          // Finest near the source: most of the depth is there.
+          const depth = this.#depthTo(end, SAMPLES_OUT, even => {
+            return { part: even.mul(even), slope: even.mul(2) }
+          })
           sum.addAssign(depth.add(OPEN).reciprocal())
         })
         return vec4(float(DIRECTIONS).div(sum).min(6e4), 0, 0, 1)
