@@ -157,7 +157,7 @@ export const columnForm = {
    * Height up to which less and less of clouds is seen towards their bases, in [0, 1], without an anvil and
    * with one, and the least share. Smaller: clouds are darker from above, and too bright at the limb (*World clouds*).
    */
-  hiddenBelow: 0.31,
+  hiddenBelow: 0.45,
   hiddenByAnvil: 1,
   leastSeen: 0.3,
   /**
