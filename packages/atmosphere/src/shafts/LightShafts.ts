@@ -61,7 +61,7 @@ const _axes = new Matrix4()
  * Clouds, hills and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`, or a `heightFieldShadow`. They need no
  * shadow map of the light.
  *
- * Needs a texture of 1 MB, and 3 bytes a pixel of the picture (less than 1 at `'low'` and `'medium'` quality), or 7 MB for materials.
+ * Needs a texture of 1 MB, and 4 bytes a pixel of the picture (1 at `'low'` and `'medium'` quality), or 7 MB for materials.
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
  *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",
@@ -266,7 +266,8 @@ export class LightShafts implements ShadowedShafts {
     const { atmosphere, source, steps } = this
     const view = atmosphere.viewOf(camera, source)
     const isLit = this.#enabled && this.#setStrength > 0 && view?.isLit && source.lightsAir
-    const { rows, groups, samples, inFog } = qualities[this.#quality]
+    const quality = qualities[this.#quality]
+    const { groups, samples, inFog } = quality
     if (isLit && frame && drawShadow(this.light, frame, camera)) {
       // Nodes of one render share the map.
       const render = `${frame.frameId} ${frame.renderId}`
@@ -274,7 +275,7 @@ export class LightShafts implements ShadowedShafts {
       this.#render = render
     }
     const maps = isLit ? shadowMapsOf(this.light) : []
-    this.#map.update(renderer, view!, atmosphere.space, maps, rows)
+    this.#map.update(renderer, view!, atmosphere.space, maps, quality)
     this.#isActive = maps.length > 0
     if (isLit) this.#updateShadows(view, renderer)
     steps.groups.value = groups

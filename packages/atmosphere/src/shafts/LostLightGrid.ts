@@ -1,4 +1,3 @@
-import { Vector2 } from 'three'
 import type { RenderTarget } from 'three'
 import { Fn, If, float, log2, luminance, mix, step, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
@@ -48,8 +47,6 @@ const LEAST = 1e-12
 /** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
 const PALE = 0.2
 
-const _means = new Vector2()
-
 /** Parts of the light that are lost, by colours. */
 function partsOf({ lost, lit }: LostLight): Vec3 {
   const all = luminance(lit).max(LEAST).toConst()
@@ -79,8 +76,8 @@ export interface LostLight {
  * Light that a picture's pixels lose, marched for a grid of them, then taken from those around a pixel that are at its
  * depth: from nine, of which any four that touch have samples in all places of their steps.
  *
- * A first pass marches. A second one takes means of the four around each corner of the grid, with their depth if they may be
- * mixed, so that most pixels are read once. Others lose the part of their own light that those around lose of theirs: of nine
+ * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
+ * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of their own light that those around lose of theirs: of nine
  * where light is steep, as about the sun, and beside silhouettes of four at their depth.
  */
 export class LostLightGrid {
@@ -89,10 +86,12 @@ export class LostLightGrid {
   readonly target: RenderTarget
   readonly #lost: TextureNode
   readonly #parts: TextureNode
-  readonly #means: TextureNode
+  readonly #texels: TextureNode
   /** Size of the picture, and of the grid [pixels]. */
   readonly #size = vector2()
   readonly #gridSize = vector2()
+  /** Texel of the target in texture coordinates. */
+  readonly #texelSize = vector2()
   /** Factor and summand from places in the picture to those among means, and the last of those. */
   readonly #toMeans = { scale: vector2(), first: vector2(), last: vector2() }
   /** Reciprocal of the pixels of the picture from one that is marched to the next. */
@@ -108,7 +107,7 @@ export class LostLightGrid {
     const [lost, parts] = this.#marched.textures
     this.#lost = texture(lost)
     this.#parts = texture(parts)
-    this.#means = texture(this.target.texture)
+    this.#texels = texture(this.target.texture)
   }
 
   /** @param spacing - Pixels from one that is marched to the next. */
@@ -117,12 +116,12 @@ export class LostLightGrid {
     this.#density.value = 1 / spacing
     const { x, y } = this.#gridSize.value.copy(this.#size.value).divideScalar(spacing).ceil()
     this.#marched.setSize(x, y)
-    this.target.setSize(x + 1, y + 1)
-    const means = _means.set(x + 1, y + 1)
+    this.target.setSize(2 * x + 1, y + 1)
+    const texelSize = this.#texelSize.value.set(1 / (2 * x + 1), 1 / (y + 1))
     const { scale, first, last } = this.#toMeans
-    scale.value.copy(this.#size.value).divideScalar(spacing).divide(means)
-    first.value.setScalar(1 - 0.5 / spacing).divide(means)
-    last.value.set(x + 0.5, y + 0.5).divide(means)
+    scale.value.copy(this.#size.value).divideScalar(spacing).multiply(texelSize)
+    first.value.setScalar(1 - 0.5 / spacing).multiply(texelSize)
+    last.value.set(x + 0.5, y + 0.5).multiply(texelSize)
   }
 
   /**
@@ -144,7 +143,7 @@ export class LostLightGrid {
         lostOut.assign(vec4(lost.mul(scale).clamp(-MOST, MOST), light))
         partsOut.assign(vec4(partsOf(found), log2(distance)))
       })
-      this.#passes = [marched, Fn(() => this.#mean())()].map(
+      this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
       )
       this.#compiled = version
@@ -153,27 +152,32 @@ export class LostLightGrid {
     this.#passes[1].render(renderer, this.target)
   }
 
-  /** A texel of the target: the mean of the four pixels about a corner of the grid. */
-  #mean(): Vec4 {
-    const sum = vec4(0).toVar()
-    const least = vec2(NO_DEPTH).toVar()
-    const most = vec2(-NO_DEPTH).toVar()
+  /** A texel of the target: the mean of the four pixels about a corner of the grid, or a pixel's part. */
+  #arrange(): Vec4 {
     const size = this.#gridSize
-    const corner = uv().mul(size.add(1)).floor().toConst()
-    loop('corner', 4, index => {
-      const at = corner.add(cornerOf(index)).sub(0.5).clamp(vec2(0.5), size.sub(0.5)).div(size)
-      const [lost, parts] = [this.#lost, this.#parts].map(
-        source => sampleLevel0(source, at.toConst() as Vec2).toConst() as Vec4
-      )
-      sum.addAssign(vec4(lost.rgb, parts.w).mul(0.25))
-      const both = vec2(parts.w, lost.w).toConst()
-      least.assign(least.min(both))
-      most.assign(most.max(both))
+    const texel = uv().div(this.#texelSize).floor().toConst() as unknown as Vec2
+    const result = vec4(0).toVar()
+    const read = (source: TextureNode, place: Vec2): Vec4 =>
+      sampleLevel0(source, place.clamp(vec2(0.5), size.sub(0.5)).div(size)).toConst()
+    If(texel.x.greaterThan(size.x.add(0.5)), () => {
+      result.assign(read(this.#parts, texel.sub(vec2(size.x.add(0.5), -0.5)).toConst() as Vec2))
+    }).Else(() => {
+      const least = vec2(NO_DEPTH).toVar()
+      const most = vec2(-NO_DEPTH).toVar()
+      loop('corner', 4, index => {
+        const at = texel.add(cornerOf(index)).sub(0.5).toConst() as Vec2
+        const [lost, parts] = [read(this.#lost, at), read(this.#parts, at)]
+        result.addAssign(vec4(lost.rgb, parts.w).mul(0.25))
+        const both = vec2(parts.w, lost.w).toConst()
+        least.assign(least.min(both))
+        most.assign(most.max(both))
+      })
+      const apart = most.sub(least).toConst()
+      const isMixed = apart.y.lessThan(STEEP).and(most.y.lessThan(MOST_MIXED))
+      const depth = result.w.add(isMixed.select(0, STEEP_DEPTH))
+      result.w.assign(apart.x.lessThan(SAME_DEPTH).select(depth, NO_DEPTH))
     })
-    const apart = most.sub(least).toConst()
-    const isMixed = apart.y.lessThan(STEEP).and(most.y.lessThan(MOST_MIXED))
-    const depth = sum.w.add(isMixed.select(0, STEEP_DEPTH))
-    return vec4(sum.rgb, apart.x.lessThan(SAME_DEPTH).select(depth, NO_DEPTH))
+    return result
   }
 
   /**
@@ -193,7 +197,7 @@ export class LostLightGrid {
   read(at: Vec2, distance: Float, lit: () => Vec3): Vec3 {
     const { scale, first, last } = this.#toMeans
     const own = log2(distance).toConst() as Float
-    const mean = sampleLevel0(this.#means, at.mul(scale).add(first).min(last)).toConst()
+    const mean = sampleLevel0(this.#texels, at.mul(scale).add(first).min(last)).toConst()
     const lost = mean.rgb.mul(this.#growth(distance).div(LIGHT_SCALE)).toVar() as Vec3
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN), () => {
       const size = this.#gridSize
@@ -201,15 +205,18 @@ export class LostLightGrid {
       const isSteep = mean.w.lessThan(MOST_STEEP).toConst()
       // Rounding may put the picture's edge before the first pixel.
       const texel = place.floor().max(0).toConst() as Vec2
+      const aside = vec2(size.x.add(1), 0).toConst()
       const weights = float(0).toVar()
       lost.assign(vec3(0))
       loop('corner', 4, index => {
         const corner = cornerOf(index).toConst() as Vec2
         const other = vec4(0).toVar()
         If(isSteep, () => {
-          other.assign(sampleLevel0(this.#parts, place.add(corner).div(size)))
+          const at = place.add(corner).clamp(vec2(0.5), size.sub(0.5)).add(aside)
+          other.assign(sampleLevel0(this.#texels, at.mul(this.#texelSize)))
         }).Else(() => {
-          other.assign(loadTexel(this.#parts, texel.add(corner).min(size.sub(1)).toConst() as Vec2))
+          const at = texel.add(corner).min(size.sub(1)).add(aside)
+          other.assign(loadTexel(this.#texels, at.toConst()))
         })
         const weight = other.w
           .sub(own)
