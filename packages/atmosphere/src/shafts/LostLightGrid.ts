@@ -4,7 +4,6 @@ import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
 import {
-  loadTexel,
   loop,
   sampleLevel0,
   type Float,
@@ -47,13 +46,15 @@ const LEAST = 1e-12
 /** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
 const PALE = 0.2
 
+/** Summand of places in the grid, whose rounding must not put whole ones into the cell before [pixels]. */
+const ROUNDING = 1e-3
+
 /** Parts of the light that are lost, by colours. */
 function partsOf({ lost, lit }: LostLight): Vec3 {
   const all = luminance(lit).max(LEAST).toConst()
-  const part = luminance(lost).div(all).toConst()
   const isBright = vec3(step(all.mul(PALE), lit)).toConst()
-  const own = lost.div(mix(vec3(all), lit, isBright))
-  return mix(vec3(part), own, isBright).clamp(-MOST, MOST)
+  const [taken, whole] = [mix(vec3(luminance(lost)), lost, isBright), mix(vec3(all), lit, isBright)]
+  return taken.div(whole).clamp(-MOST, MOST)
 }
 
 /** First or last in each direction, of four by their number. */
@@ -77,8 +78,9 @@ export interface LostLight {
  * depth: from nine, of which any four that touch have samples in all places of their steps.
  *
  * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
- * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of their own light that those around lose of theirs: of nine
- * where light is steep, as about the sun, and beside silhouettes of four at their depth.
+ * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of
+ * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and beside silhouettes of
+ * four at their depth.
  */
 export class LostLightGrid {
   /** Lost light with log₂ of the light that there is; its part of that with log₂ of the distance. */
@@ -92,8 +94,9 @@ export class LostLightGrid {
   readonly #gridSize = vector2()
   /** Texel of the target in texture coordinates. */
   readonly #texelSize = vector2()
-  /** Factor and summand from places in the picture to those among means, and the last of those. */
-  readonly #toMeans = { scale: vector2(), first: vector2(), last: vector2() }
+  /** Factor and summand from places in the picture to those among means. */
+  readonly #scale = vector2()
+  readonly #offset = vector2()
   /** Reciprocal of the pixels of the picture from one that is marched to the next. */
   readonly #density = number(1)
   /** Longest mean free path in the air at the camera [m]. Shorter: dark pixels along the horizon (*Ridge at sunrise*). */
@@ -116,12 +119,11 @@ export class LostLightGrid {
     this.#density.value = 1 / spacing
     const { x, y } = this.#gridSize.value.copy(this.#size.value).divideScalar(spacing).ceil()
     this.#marched.setSize(x, y)
-    this.target.setSize(2 * x + 1, y + 1)
-    const texelSize = this.#texelSize.value.set(1 / (2 * x + 1), 1 / (y + 1))
-    const { scale, first, last } = this.#toMeans
-    scale.value.copy(this.#size.value).divideScalar(spacing).multiply(texelSize)
-    first.value.setScalar(1 - 0.5 / spacing).multiply(texelSize)
-    last.value.set(x + 0.5, y + 0.5).multiply(texelSize)
+    // A column of means more than there are corners, for pixels beyond the last of the grid.
+    this.target.setSize(2 * x + 2, y + 1)
+    const texelSize = this.#texelSize.value.set(1 / (2 * x + 2), 1 / (y + 1))
+    this.#scale.value.copy(this.#size.value).divideScalar(spacing).multiply(texelSize)
+    this.#offset.value.setScalar(1 - 0.5 / spacing).multiply(texelSize)
   }
 
   /**
@@ -159,8 +161,8 @@ export class LostLightGrid {
     const result = vec4(0).toVar()
     const read = (source: TextureNode, place: Vec2): Vec4 =>
       sampleLevel0(source, place.clamp(vec2(0.5), size.sub(0.5)).div(size)).toConst()
-    If(texel.x.greaterThan(size.x.add(0.5)), () => {
-      result.assign(read(this.#parts, texel.sub(vec2(size.x.add(0.5), -0.5)).toConst() as Vec2))
+    If(texel.x.greaterThan(size.x.add(1.5)), () => {
+      result.assign(read(this.#parts, texel.sub(vec2(size.x.add(1.5), -0.5)).toConst()))
     }).Else(() => {
       const least = vec2(NO_DEPTH).toVar()
       const most = vec2(-NO_DEPTH).toVar()
@@ -195,29 +197,24 @@ export class LostLightGrid {
    * @param lit - See {@link LostLight}; asked for in a branch.
    */
   read(at: Vec2, distance: Float, lit: () => Vec3): Vec3 {
-    const { scale, first, last } = this.#toMeans
     const own = log2(distance).toConst() as Float
-    const mean = sampleLevel0(this.#texels, at.mul(scale).add(first).min(last)).toConst()
+    const middle = at.mul(this.#scale).add(this.#offset).toConst()
+    const mean = sampleLevel0(this.#texels, middle).toConst()
     const lost = mean.rgb.mul(this.#growth(distance).div(LIGHT_SCALE)).toVar() as Vec3
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN), () => {
       const size = this.#gridSize
-      const place = at.mul(this.#size).sub(0.5).mul(this.#density).toConst() as Vec2
-      const isSteep = mean.w.lessThan(MOST_STEEP).toConst()
-      // Rounding may put the picture's edge before the first pixel.
-      const texel = place.floor().max(0).toConst() as Vec2
-      const aside = vec2(size.x.add(1), 0).toConst()
+      const place = middle
+        .div(this.#texelSize)
+        .sub(1 - ROUNDING)
+        .toConst() as Vec2
+      const isSteep = mean.w.lessThan(MOST_STEEP)
+      const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
       const weights = float(0).toVar()
       lost.assign(vec3(0))
       loop('corner', 4, index => {
-        const corner = cornerOf(index).toConst() as Vec2
-        const other = vec4(0).toVar()
-        If(isSteep, () => {
-          const at = place.add(corner).clamp(vec2(0.5), size.sub(0.5)).add(aside)
-          other.assign(sampleLevel0(this.#texels, at.mul(this.#texelSize)))
-        }).Else(() => {
-          const at = texel.add(corner).min(size.sub(1)).add(aside)
-          other.assign(loadTexel(this.#texels, at.toConst()))
-        })
+        const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
+        const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
+        const other = sampleLevel0(this.#texels, at).toConst()
         const weight = other.w
           .sub(own)
           .abs()
