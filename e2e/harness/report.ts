@@ -13,7 +13,7 @@ const paint = (code: number, text: string): string =>
 export class Report {
   passed = 0
   failed = 0
-  /** What failed and why, for the summary of `npm test`. */
+  /** Failures and their reasons, for the summary of `npm test`. */
   private readonly failures: string[] = []
 
   pass(name: string, detail = ''): void {

@@ -114,7 +114,8 @@ async function displacement(
 for (const [quality, backends] of [
   ['medium', ['webgpu', 'webgl']],
   // Other numbers in the shaders that medium quality has drawn on both.
-  ['high', ['webgpu']]
+  ['high', ['webgpu']],
+  ['low', ['webgpu']]
 ] as const satisfies [LightShaftsQuality, Backend[]][]) {
   gpuTest(
     `has edges of shafts where a half-plane has them, at ${quality} quality`,

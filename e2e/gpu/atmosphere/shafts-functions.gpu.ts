@@ -71,7 +71,8 @@ gpuTest('has a view ray in the row of the rays of light that it crosses', async 
     evenDistance: float(even),
     logScale: float(logScale),
     logOffset: float(0),
-    columns: float(columns)
+    columns: float(columns),
+    rows: float(4 * columns)
   }
   const next = random(5)
   const texels = Array.from({ length: 32 }, () => [next(), next(), 1e4 * (2 * next() - 1)])

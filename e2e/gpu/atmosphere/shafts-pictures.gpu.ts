@@ -98,6 +98,34 @@ function bands(expected: Picture, picture: Picture): { greatest: number; part: n
   }
 }
 
+/** Pixels of small pictures from one that is marched to the next. */
+const APART = 3
+
+/** Errors' steps where pixels begin to take others of those that are marched, over all other steps. More: a comb of lines. */
+const COMB = 1.6
+
+/** Mean step of the error at every third pixel of rows and columns, over that of the others. */
+function comb(expected: Picture, picture: Picture): number {
+  const shown = display(expected)
+  const { width, height } = expected
+  const error = (x: number, y: number): number => {
+    const i = 4 * (y * width + x) + 1
+    return shown(picture.data[i]) - shown(expected.data[i])
+  }
+  const [edges, others] = [true, false].map(isEdge => {
+    const steps: number[] = []
+    for (let y = 0; y < height - 1; y++) {
+      for (let x = 0; x < width - 1; x++) {
+        const here = error(x, y)
+        if (((x + 1) % APART === 0) === isEdge) steps.push(Math.abs(error(x + 1, y) - here))
+        if (((y + 1) % APART === 0) === isEdge) steps.push(Math.abs(error(x, y + 1) - here))
+      }
+    }
+    return steps.reduce((sum, step) => sum + step, 0) / steps.length
+  })
+  return edges / others
+}
+
 /** Shafts by the scene's materials: of a quality, or by all steps for each pixel. */
 async function byMaterials(
   renderer: WebGPURenderer,
@@ -221,9 +249,11 @@ gpuTest(
     t.note(`without shafts ${lit.toFixed(1)} dB`)
     for (const [quality, goal] of fogGoals) {
       shafts.set({ quality })
-      const still = likeness(expected, await set.draw())
-      t.note(`${quality}: ${still.toFixed(1)} dB`)
+      const picture = await set.draw()
+      const [still, lines] = [likeness(expected, picture), comb(expected, picture)]
+      t.note(`${quality}: ${still.toFixed(1)} dB, comb ${lines.toFixed(2)}`)
       expectTrue(still >= goal, `${quality} shafts in fog`)
+      expectTrue(lines <= COMB, `${quality} shafts have lines between the pixels that are marched`)
       const forward = likeness(expected, await byMaterials(renderer, set, quality))
       t.note(`materials ${forward.toFixed(1)} dB`)
       expectTrue(forward >= 40, `${quality} shafts of materials in fog`)

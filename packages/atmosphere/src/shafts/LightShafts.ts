@@ -266,7 +266,8 @@ export class LightShafts implements ShadowedShafts {
     const { atmosphere, source, steps } = this
     const view = atmosphere.viewOf(camera, source)
     const isLit = this.#enabled && this.#setStrength > 0 && view?.isLit && source.lightsAir
-    const { rows, groups, samples, inFog } = qualities[this.#quality]
+    const quality = qualities[this.#quality]
+    const { groups, samples, inFog } = quality
     if (isLit && frame && drawShadow(this.light, frame, camera)) {
       // Nodes of one render share the map.
       const render = `${frame.frameId} ${frame.renderId}`
@@ -274,7 +275,7 @@ export class LightShafts implements ShadowedShafts {
       this.#render = render
     }
     const maps = isLit ? shadowMapsOf(this.light) : []
-    this.#map.update(renderer, view!, atmosphere.space, maps, rows)
+    this.#map.update(renderer, view!, atmosphere.space, maps, quality)
     this.#isActive = maps.length > 0
     if (isLit) this.#updateShadows(view, renderer)
     steps.groups.value = groups

@@ -4,10 +4,10 @@ import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
 import {
-  loadTexel,
   loop,
   sampleLevel0,
   type Float,
+  type Int,
   type Vec2,
   type Vec3,
   type Vec4
@@ -21,9 +21,13 @@ import { number, vector2 } from '../uniforms'
 const SAME_DEPTH = 0.35
 const OTHER_DEPTH = 0.8
 
-/** Octaves from a pixel's depth to that of pixels around, which are at one depth; and what says that they are not. */
+/** Octaves from a pixel's depth to that of pixels around, which are at one depth. */
 const NEAR_MEAN = 0.2
-const NO_DEPTH = 1e3
+
+/** Depth of means of pixels that are not at one, summand of depths where light is steep, and what its sums are below. */
+const NO_DEPTH = 6e4
+const STEEP_DEPTH = 64
+const MOST_STEEP = 128
 
 /** Least weight in the bilateral upsampling: that of pixels of another depth. */
 const MIN_WEIGHT = 1e-3
@@ -42,13 +46,21 @@ const LEAST = 1e-12
 /** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
 const PALE = 0.2
 
+/** Summand of places in the grid, whose rounding must not put whole ones into the cell before [pixels]. */
+const ROUNDING = 1e-3
+
 /** Parts of the light that are lost, by colours. */
 function partsOf({ lost, lit }: LostLight): Vec3 {
   const all = luminance(lit).max(LEAST).toConst()
-  const part = luminance(lost).div(all).toConst()
   const isBright = vec3(step(all.mul(PALE), lit)).toConst()
-  const own = lost.div(mix(vec3(all), lit, isBright))
-  return mix(vec3(part), own, isBright).clamp(-MOST, MOST)
+  const [taken, whole] = [mix(vec3(luminance(lost)), lost, isBright), mix(vec3(all), lit, isBright)]
+  return taken.div(whole).clamp(-MOST, MOST)
+}
+
+/** First or last in each direction, of four by their number. */
+function cornerOf(index: Int): Vec2 {
+  const row = float(index).div(2).floor().toConst()
+  return vec2(float(index).sub(row.mul(2)), row)
 }
 
 /** Light of a ray. */
@@ -65,12 +77,13 @@ export interface LostLight {
  * Light that a picture's pixels lose, marched for a grid of them, then taken from those around a pixel that are at its
  * depth: from nine, of which any four that touch have samples in all places of their steps.
  *
- * A first pass marches. A second one puts two things side by side, so that a pixel is read once from one texture: means of
- * the four around each corner of the grid, with their depth if they may be mixed; and the part of the light that each loses, with
- * its depth, of which pixels take that of others at their depth.
+ * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
+ * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of
+ * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and beside silhouettes of
+ * four at their depth.
  */
 export class LostLightGrid {
-  /** Lost light with log₂ of the distance; its part of the light that there is, with log₂ of that. */
+  /** Lost light with log₂ of the light that there is; its part of that with log₂ of the distance. */
   readonly #marched: RenderTarget
   readonly target: RenderTarget
   readonly #lost: TextureNode
@@ -79,10 +92,13 @@ export class LostLightGrid {
   /** Size of the picture, and of the grid [pixels]. */
   readonly #size = vector2()
   readonly #gridSize = vector2()
-  /** Reciprocal of the pixels of the picture from one that is marched to the next. */
-  readonly #density = number(1)
   /** Texel of the target in texture coordinates. */
   readonly #texelSize = vector2()
+  /** Factor and summand from places in the picture to those among means. */
+  readonly #scale = vector2()
+  readonly #offset = vector2()
+  /** Reciprocal of the pixels of the picture from one that is marched to the next. */
+  readonly #density = number(1)
   /** Longest mean free path in the air at the camera [m]. Shorter: dark pixels along the horizon (*Ridge at sunrise*). */
   readonly freePath = number(1)
   #passes: readonly FragmentPass[] = []
@@ -103,8 +119,11 @@ export class LostLightGrid {
     this.#density.value = 1 / spacing
     const { x, y } = this.#gridSize.value.copy(this.#size.value).divideScalar(spacing).ceil()
     this.#marched.setSize(x, y)
-    this.target.setSize(2 * x + 1, y + 1)
-    this.#texelSize.value.set(1 / (2 * x + 1), 1 / (y + 1))
+    // A column of means more than there are corners, for pixels beyond the last of the grid.
+    this.target.setSize(2 * x + 2, y + 1)
+    const texelSize = this.#texelSize.value.set(1 / (2 * x + 2), 1 / (y + 1))
+    this.#scale.value.copy(this.#size.value).divideScalar(spacing).multiply(texelSize)
+    this.#offset.value.setScalar(1 - 0.5 / spacing).multiply(texelSize)
   }
 
   /**
@@ -122,8 +141,9 @@ export class LostLightGrid {
         const found = march(at, pixel)
         const { lost, lit, distance } = found
         const scale = float(LIGHT_SCALE).div(this.#growth(distance)).toConst()
-        lostOut.assign(vec4(lost.mul(scale).clamp(-MOST, MOST), log2(distance)))
-        partsOut.assign(vec4(partsOf(found), log2(luminance(lit).max(LEAST).mul(scale))))
+        const light = log2(luminance(lit).max(LEAST).mul(scale))
+        lostOut.assign(vec4(lost.mul(scale).clamp(-MOST, MOST), light))
+        partsOut.assign(vec4(partsOf(found), log2(distance)))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -134,34 +154,30 @@ export class LostLightGrid {
     this.#passes[1].render(renderer, this.target)
   }
 
-  /** A texel of the target. */
+  /** A texel of the target: the mean of the four pixels about a corner of the grid, or a pixel's part. */
   #arrange(): Vec4 {
-    const result = vec4(0).toVar()
     const size = this.#gridSize
     const texel = uv().div(this.#texelSize).floor().toConst() as unknown as Vec2
-    const column = texel.x.sub(size.x).sub(1).toConst() as Float
-    const read = (source: TextureNode, x: Float, y: Float): Vec4 =>
-      sampleLevel0(source, vec2(x, y).clamp(vec2(0.5), size.sub(0.5)).div(size))
-    If(column.lessThan(0), () => {
+    const result = vec4(0).toVar()
+    const read = (source: TextureNode, place: Vec2): Vec4 =>
+      sampleLevel0(source, place.clamp(vec2(0.5), size.sub(0.5)).div(size)).toConst()
+    If(texel.x.greaterThan(size.x.add(1.5)), () => {
+      result.assign(read(this.#parts, texel.sub(vec2(size.x.add(1.5), -0.5)).toConst()))
+    }).Else(() => {
       const least = vec2(NO_DEPTH).toVar()
       const most = vec2(-NO_DEPTH).toVar()
       loop('corner', 4, index => {
-        const row = float(index).div(2).floor().toConst()
-        const x = texel.x.add(float(index).sub(row.mul(2)).sub(0.5)).toConst()
-        const y = texel.y.add(row).sub(0.5).toConst()
-        const other = read(this.#lost, x, y).toConst()
-        const both = vec2(other.w, read(this.#parts, x, y).w).toConst()
-        result.addAssign(other.mul(0.25))
+        const at = texel.add(cornerOf(index)).sub(0.5).toConst() as Vec2
+        const [lost, parts] = [read(this.#lost, at), read(this.#parts, at)]
+        result.addAssign(vec4(lost.rgb, parts.w).mul(0.25))
+        const both = vec2(parts.w, lost.w).toConst()
         least.assign(least.min(both))
         most.assign(most.max(both))
       })
       const apart = most.sub(least).toConst()
-      const isEven = apart.x.lessThan(SAME_DEPTH).and(apart.y.lessThan(STEEP))
-      const isMixed = isEven.and(most.y.lessThan(MOST_MIXED))
-      result.w.assign(isMixed.select(result.w, NO_DEPTH))
-    }).Else(() => {
-      result.rgb.assign(read(this.#parts, column.add(0.5), texel.y.add(0.5)).rgb)
-      result.w.assign(read(this.#lost, column.add(0.5), texel.y.add(0.5)).w)
+      const isMixed = apart.y.lessThan(STEEP).and(most.y.lessThan(MOST_MIXED))
+      const depth = result.w.add(isMixed.select(0, STEEP_DEPTH))
+      result.w.assign(apart.x.lessThan(SAME_DEPTH).select(depth, NO_DEPTH))
     })
     return result
   }
@@ -181,27 +197,24 @@ export class LostLightGrid {
    * @param lit - See {@link LostLight}; asked for in a branch.
    */
   read(at: Vec2, distance: Float, lit: () => Vec3): Vec3 {
-    const size = this.#gridSize
-    const place = at.mul(this.#size).sub(0.5).mul(this.#density).toConst() as Vec2
     const own = log2(distance).toConst() as Float
-    const middle = place.add(1).min(size.add(0.5)).mul(this.#texelSize)
+    const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
     const lost = mean.rgb.mul(this.#growth(distance).div(LIGHT_SCALE)).toVar() as Vec3
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN), () => {
-      // Rounding may put the picture's edge before the first pixel.
-      const first = place.floor().max(0).toConst() as Vec2
-      const last = size.sub(1).toConst() as Vec2
-      const single = vec2(size.x.add(1), 0).toConst() as Vec2
+      const size = this.#gridSize
+      const place = middle
+        .div(this.#texelSize)
+        .sub(1 - ROUNDING)
+        .toConst() as Vec2
+      const isSteep = mean.w.lessThan(MOST_STEEP)
+      const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
       const weights = float(0).toVar()
       lost.assign(vec3(0))
       loop('corner', 4, index => {
-        const row = float(index).div(2).floor().toConst()
-        const corner = first
-          .add(vec2(float(index).sub(row.mul(2)), row))
-          .min(last)
-          .add(single)
-          .toConst()
-        const other = loadTexel(this.#texels, corner).toConst()
+        const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
+        const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
+        const other = sampleLevel0(this.#texels, at).toConst()
         const weight = other.w
           .sub(own)
           .abs()
@@ -212,7 +225,6 @@ export class LostLightGrid {
         lost.addAssign(other.rgb.mul(weight))
         weights.addAssign(weight)
       })
-      // Of light that others have more of, or less, the same part.
       lost.mulAssign(lit().div(weights))
     })
     return lost

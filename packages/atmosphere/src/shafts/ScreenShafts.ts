@@ -30,6 +30,13 @@ const LOOKS = 6
 /** Height in radii of the planet from which meshes have no shafts: shadow maps' rays of light are one direction from there. */
 const FARTHEST = 20
 
+/** End of a view ray: displacement in the mapped space of what gives its direction, its length, and how far one sees [m]. */
+interface RayEnd {
+  readonly offset: Vec3
+  readonly length: Float
+  readonly distance: Float
+}
+
 const _size = new Vector2()
 
 /**
@@ -116,7 +123,7 @@ export class ScreenShafts implements ScreenShadows {
     if (this.#isElsewhere) return undefined
     const lost = vec3(0).toVar()
     If(this.#strength.greaterThan(0), () => {
-      lost.assign(this.#lostOf(this.#rayThrough(position, isSky)))
+      lost.assign(this.#lostUpTo(this.#endAt(position, isSky)))
     })
     return lost
   }
@@ -183,8 +190,8 @@ export class ScreenShafts implements ScreenShadows {
     return this.isMesh ? screenUV : uv()
   }
 
-  #lostOf(ray: ShaftRay): Vec3 {
-    const lost = this.grid.read(this.#place, ray.distance, () => this.#litAir(ray))
+  #lostUpTo(end: RayEnd): Vec3 {
+    const lost = this.grid.read(this.#place, end.distance, () => this.#litAir(this.#rayTo(end)))
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -198,7 +205,7 @@ export class ScreenShafts implements ScreenShadows {
     const left = color.toVar()
     if (this.#isElsewhere) return left
     If(this.#strength.greaterThan(0), () => {
-      const lost = Fn(({ renderer }): Vec3 => this.#lostOf(this.#rayTo(renderer, this.#place)))()
+      const lost = Fn(({ renderer }): Vec3 => this.#lostUpTo(this.#endIn(renderer, this.#place)))()
       // Clouds may also give light.
       left.subAssign(lost.min(left))
     })
@@ -221,30 +228,38 @@ export class ScreenShafts implements ScreenShadows {
   /** Light that the ray of a pixel of the grid loses. */
   #march(renderer: Renderer, at: Vec2, pixel: Vec2): LostLight {
     const { view, shadowedAir, steps } = this.#shafts
-    const ray = this.#rayTo(renderer, at)
+    const ray = this.#rayTo(this.#endIn(renderer, at))
     const { seenFrom, most } = this.#seen(at)
     const seen = { ...ray, distance: ray.distance.min(most).toConst() as Float, seenFrom }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
     return { lost: this.#color(lost), lit: this.#litAir(ray), distance: ray.distance }
   }
 
-  /** View ray to what is seen: to the sky, or the planet, where nothing was drawn. */
-  #rayTo(renderer: Renderer, at: Vec2): ShaftRay {
+  /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
+  #endIn(renderer: Renderer, at: Vec2): RayEnd {
     const { position, isSky } = this.isMesh
       ? { position: this.#rays.position(renderer, at, float(0.5)), isSky: bool(true) as Bool }
       : this.#rays.at(renderer, at)
-    return this.#rayThrough(position, isSky)
+    return this.#endAt(position, isSky)
   }
 
-  #rayThrough(position: Vec3, isSky: Bool): ShaftRay {
+  #endAt(position: Vec3, isSky: Bool): RayEnd {
     const { view } = this.#shafts
-    const offset = view.toMapped(position).toConst()
-    const length = offset.length().max(1e-3).toConst()
-    const direction = offset.div(length).toConst()
-    const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
-    const cosViewLight = direction.dot(view.lightDirection).toConst() as Float
-    const hitsGround = cosView.lessThan(view.viewpoint.cosHorizon) as Bool
-    const distance = isSky.select(distanceOf({ hitsGround }), length).toConst() as Float
+    const offset = view.toMapped(position).toConst() as Vec3
+    const length = offset.length().max(1e-3).toConst() as Float
+    const distance = length.toVar() as Float
+    If(isSky, () => {
+      const hitsGround = offset.dot(view.up).lessThan(length.mul(view.viewpoint.cosHorizon)) as Bool
+      distance.assign(distanceOf({ hitsGround }))
+    })
+    return { offset, length, distance }
+  }
+
+  #rayTo({ offset, length, distance }: RayEnd): ShaftRay {
+    const { up, lightDirection } = this.#shafts.view
+    const direction = offset.div(length).toConst() as Vec3
+    const cosView = direction.dot(up).clamp(-1, 1).toConst() as Float
+    const cosViewLight = direction.dot(lightDirection).toConst() as Float
     return { direction, cosView, cosViewLight, distance }
   }
 

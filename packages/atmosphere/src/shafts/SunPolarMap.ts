@@ -39,7 +39,8 @@ export class SunPolarMap {
     evenDistance: number(1),
     logScale: number(1),
     logOffset: number(),
-    columns: number(1)
+    columns: number(1),
+    rows: number(1)
   }
   /** Greatest ρ of a shadow map [m]; 0 without maps. */
   readonly maximumRho = number()
@@ -57,19 +58,20 @@ export class SunPolarMap {
   /**
    * Draws it for a camera.
    *
-   * @param rows - Number of directions around the light; there are a quarter as many columns.
+   * @param size - Directions around the light (`rows`), and distances from its line to the camera (`columns`).
    */
   update(
     renderer: Renderer,
     view: PolarView,
     space: SphericalSpace,
     maps: readonly ShadowMap[],
-    rows: number
+    { rows, columns }: { readonly rows: number; readonly columns: number }
   ): void {
     this.maximumRho.value = 0
     // Without maps, too: what has drawn with the texture in this frame must find it at its end.
-    this.target.setSize(rows / 4, rows)
-    this.frame.columns.value = rows / 4
+    this.target.setSize(columns, rows)
+    this.frame.columns.value = columns
+    this.frame.rows.value = rows
     if (maps.length === 0) return
     this.#setSources(renderer, maps)
     this.#setFrame(view, space, maps)

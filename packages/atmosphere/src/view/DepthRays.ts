@@ -1,4 +1,4 @@
-import type { Camera, OrthographicCamera } from 'three'
+import type { Camera, Matrix4, OrthographicCamera } from 'three'
 import {
   float,
   getViewPosition,
@@ -8,8 +8,12 @@ import {
   uniform,
   vec3
 } from 'three/tsl'
-import type { Node, Renderer, TextureNode } from 'three/webgpu'
+import type { Node, Renderer, TextureNode, UniformNode } from 'three/webgpu'
 import type { Bool, Float, Vec2, Vec3 } from '../tsl-types'
+import { getOrMake } from './getOrMake'
+
+/** Inverse of a camera's projection, one for all that read it: compilers take what they compute with it for the same. */
+const inverses = new WeakMap<Camera, UniformNode<'mat4', Matrix4>>()
 
 /** Positions in view space of what a camera has drawn, by its depth. */
 export class DepthRays {
@@ -20,7 +24,9 @@ export class DepthRays {
     readonly depthNode: Node,
     readonly camera: Camera
   ) {
-    this.#projectionInverse = uniform(camera.projectionMatrixInverse)
+    this.#projectionInverse = getOrMake(inverses, camera, () =>
+      uniform(camera.projectionMatrixInverse)
+    )
   }
 
   depthAt(at: Vec2): Float {

@@ -20,8 +20,9 @@ export interface PolarFrame {
   /** Factor and summand that turn ln(1 + ρ/ρ₀) into a position among columns, in [0, 1] from first to last. */
   readonly logScale: Float
   readonly logOffset: Float
-  /** Number of columns; there are four times as many rows. */
+  /** Number of columns, and of rows. */
   readonly columns: Float
+  readonly rows: Float
 }
 
 /** A view ray in a {@link PolarFrame}. */
@@ -42,7 +43,7 @@ export interface PolarRay {
  * @param cosViewLight - ν, direction against the source.
  */
 export function polarRay(
-  { across, along, columns }: PolarFrame,
+  { across, along, rows }: PolarFrame,
   direction: Vec3,
   cosViewLight: Float
 ): PolarRay {
@@ -51,14 +52,13 @@ export function polarRay(
   // Not √(1 − ν²), which cancels near the source.
   const sinViewLight = x.mul(x).add(y.mul(y)).sqrt().max(1e-7).toConst() as Float
   const turns = atan(y, x).mul(1 / (2 * Math.PI))
-  const count = columns.mul(4).toConst() as Float
-  const place = turns.add(1).mul(count).sub(0.5).toConst() as Float
+  const place = turns.add(1).mul(rows).sub(0.5).toConst() as Float
   const first = place.floor().toConst() as Float
   return {
     sinViewLight,
     angle: atan(sinViewLight, cosViewLight.abs()).toConst(),
     isTowards: cosViewLight.greaterThan(0).toConst(),
-    rows: [first.mod(count).toConst(), first.add(1).mod(count).toConst()],
+    rows: [first.mod(rows).toConst(), first.add(1).mod(rows).toConst()],
     betweenRows: place.sub(first).toConst()
   }
 }
