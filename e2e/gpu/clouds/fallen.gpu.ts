@@ -1,13 +1,11 @@
-import { Atmosphere } from '@welkin/atmosphere'
-import { CloudField, CloudLayers, precipitationShafts } from '@welkin/clouds'
-import { PerspectiveCamera } from 'three'
+import { CloudLayers, precipitationShafts } from '@welkin/clouds'
 import { float, int, vec3, vec4 } from 'three/tsl'
-import type { NodeFrame } from 'three/webgpu'
 import { fallenOf, lagOf } from '../../../packages/clouds/test/twins/precipitation'
 import type { WeatherMap } from '../../../packages/clouds/src/density/WeatherMap'
 import { layerAt } from '../../../packages/clouds/src/density/tsl/layer'
 import { fallenFrom, fallLag } from '../../../packages/clouds/src/precipitation/tsl/fall'
 import type { Float, Int, Vec3 } from '../../../packages/clouds/src/tsl-types'
+import { evenClouds } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -39,16 +37,10 @@ gpuTest(
         precipitation: { ...precipitation, streaks: 0 }
       }))
     )
-    // Without streaks its noise does not count, and is not drawn.
-    const renderer = await t.createRenderer()
-    const camera = new PerspectiveCamera()
-    const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45 })
-    const field = new CloudField(atmosphere, layers)
+    const scene = await evenClouds(t, layers, { longitude: 20, latitude: 45 })
+    const { field, renderer } = scene
     const medium = precipitationShafts()
-    const view = atmosphere.update(renderer, camera)
-    field.view.update({ renderer, camera } as unknown as NodeFrame)
-    field.update(view, 0)
-    medium.update(field, view)
+    medium.update(field, scene.update())
     const inputs = falls.flatMap((_, layer) =>
       RANKS.flatMap(rank => ALTITUDES.map(altitude => [rank, altitude, layer, 0]))
     )
@@ -86,8 +78,7 @@ gpuTest(
     expectTrue(weak[0] === 0, 'weak virga reaches the ground')
     expectTrue(heavy[0] > 0 && heavy[0] < 0.1 * snow[0], 'heavier rain reaches the ground')
     expectTrue(snow[1] === 0 && storm[1] > 0.1 * storm[0], 'hail where it is asked for alone')
-    field.dispose()
-    atmosphere.dispose()
+    scene.dispose()
   },
   // WebGL compiles the same functions in the clouds' march.
   { backends: ['webgpu'] }
