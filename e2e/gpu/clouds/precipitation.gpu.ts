@@ -22,8 +22,8 @@ import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 
-/** Angles from the point opposite the sun: inside of the bow, in its red, and in the dark band outside [°]. */
-const ANGLES = [36, 41.8, 46] as const
+/** Angles from the point opposite the sun: inside of the bow, in its red, in the dark band outside, and in the outer bow's red [°]. */
+const ANGLES = [36, 41.8, 46, 51.3] as const
 const BASE = 1500
 /** It rains from here on to the east: beside the camera over the ground, everywhere in sight from above [m]. */
 const EDGES = { ground: 300, above: -50_000 } as const
@@ -179,7 +179,7 @@ gpuTest(
     const scene = await evenClouds(t, layers, { ...place, height: 30 })
     const look = rainInTheEast(scene, drops)
     const say = (values: readonly number[]): string =>
-      values.map(value => value.toFixed(3)).join(', ')
+      values.map(value => value.toPrecision(3)).join(', ')
 
     const overGround = ANGLES.map(angle => raysAround(angle, 25, 60).filter(({ y }) => y > 0.02))
     const rays = overGround.flat()
@@ -199,14 +199,15 @@ gpuTest(
       const wet = overGround.map(same =>
         same.filter(({ x }) => x > 0.1).map(ray => found[rays.indexOf(ray)])
       )
-      const [inside, bow, outside] = wet.map(seen =>
+      const [inside, bow, outside, outer] = wet.map(seen =>
         mean(seen.map(({ once, weight }) => once / weight))
       )
       const shines = wet.map(seen => mean(seen.map(({ shine }) => shine)))
       const name = isMoonlit ? 'moonlit' : isShaded ? 'in shadow' : 'sunlit'
-      t.note(`${name}: ${say([inside, bow, outside])}, shining ${say(shines)}`)
+      t.note(`${name}: ${say([inside, bow, outside, outer])}, shining ${say(shines)}`)
       if (isShaded) expectTrue(bow < 1e-6, `a bow in the shadow of clouds: ${bow}`)
       else expectTrue(bow > 1.5 * inside && bow > 3 * outside, `${inside}, ${bow}, ${outside}`)
+      if (!isShaded) expectTrue(outer > 3 * outside, `${outer} in the outer bow, ${outside} before`)
       // All of the light, with what is scattered more often and with that of sky and ground.
       const isBow = shines[1] > 1.1 * shines[0] && shines[1] > 1.2 * shines[2]
       expectTrue(isBow !== isShaded, `${name}: light ${say(shines)} times that without a bow`)
@@ -220,14 +221,14 @@ gpuTest(
     const found = await look(circles.flat(), {
       light: 60,
       edge: EDGES.above,
-      reach: 20_000,
+      reach: 40_000,
       isShaded: false
     })
     for (let i = 0; i < around; i++) {
-      const [within, on, beyond] = ANGLES.map((_, k) => found[k * around + i].once)
+      const [within, on, beyond, outer] = ANGLES.map((_, k) => found[k * around + i].once)
       expectTrue(
-        on > 1.5 * within && on > 3 * beyond,
-        `no bow from above at ${(360 * (i + 0.5)) / around}°: ${say([within, on, beyond])}`
+        on > 1.5 * within && on > 3 * beyond && outer > 3 * beyond,
+        `no bow from above at ${(360 * (i + 0.5)) / around}°: ${say([within, on, beyond, outer])}`
       )
     }
     scene.dispose()
