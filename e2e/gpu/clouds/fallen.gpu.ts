@@ -16,7 +16,7 @@ const [BASE, TOP] = [2000, 6000]
 const RANKS = [0.05, 0.3, 0.55, 0.7, 0.85, 1]
 const ALTITUDES = [2300, 2230, 2120, 2000, 1900, 1700, 1450, 1250, 1150, 1000, 800, 500, 100, 0]
 
-/** What falls, each from a layer of its own, without streaks. */
+/** Weathers, each from a layer of its own, without streaks. */
 const weathers = {
   'melting snow': { rate: 3, freezingLevel: 1300 },
   'virga of 600 m': { rate: 4, virgaDepth: 600, freezingLevel: 1300 },
