@@ -1,5 +1,7 @@
 import {
   Atmosphere,
+  moon,
+  MoonDirectionalLight,
   precipitationOverlay,
   PrecipitationShelter,
   rainfall,
@@ -12,22 +14,28 @@ import {
 } from '@welkin/atmosphere'
 import {
   AmbientLight,
+  DirectionalLight,
+  MathUtils,
   Mesh,
   MeshBasicMaterial,
+  MeshLambertMaterial,
   PerspectiveCamera,
   PlaneGeometry,
   PointLight,
   Scene,
-  SpotLight
+  SpotLight,
+  Vector3
 } from 'three'
 import { float, vec3, vec4 } from 'three/tsl'
 import { MeshBasicNodeMaterial, MeshStandardNodeMaterial, RenderPipeline } from 'three/webgpu'
+import { LampUniforms } from '../../../packages/atmosphere/src/precipitation/LampUniforms'
 import { rain, snow } from '../../../packages/atmosphere/src/precipitation/ParticleKind'
 import {
   drawnDepth,
   flakeWidth
 } from '../../../packages/atmosphere/test/twins/precipitation/meanDepth'
-import { drawToFloat, expectLight } from '../harness/atmosphere'
+import { drawToFloat, expectLight, random } from '../harness/atmosphere'
+import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
@@ -176,6 +184,119 @@ gpuTest(
     falling.dispose()
     shelter.dispose()
     atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
+  'rain has as much of the moon’s light as a wall has, which another light gives as well',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const { scene, camera, atmosphere } = view()
+    atmosphere.setSunAngles(-30, 0)
+    const luna = moon({ phase: 0.5, direction: new Vector3(0.5, 0.6, 0.7).normalize() })
+    const moonlight = new MoonDirectionalLight(atmosphere, luna)
+    const lamp = new DirectionalLight('#ffffff', 2)
+    lamp.position.copy(luna.direction!)
+    const wall = new Mesh(new PlaneGeometry(100, 100), new MeshLambertMaterial({ color: 0xffffff }))
+    wall.position.copy(camera.position)
+    wall.quaternion.copy(camera.quaternion)
+    wall.translateZ(-20)
+    const drawn = async (light: DirectionalLight): Promise<number[]> => {
+      const falling = rainfall(atmosphere, {
+        rate: 40,
+        time: 10,
+        maxParticles: 5000,
+        lights: [light]
+      })
+      scene.clear()
+      // The light follows the camera where it stands in the scene, as the wall does.
+      scene.add(light, light.target, falling)
+      light.target.position.copy(camera.position)
+      if (light === lamp) light.position.copy(luna.direction!).add(camera.position)
+      await nextFrame()
+      const rained = await drawToFloat(renderer, () => renderer.render(scene, camera))
+      scene.remove(falling).add(wall)
+      await nextFrame()
+      const bare = await drawToFloat(renderer, () => renderer.render(scene, camera))
+      falling.dispose()
+      return [0, 1, 2].map(channel => mean(rained, channel) / mean(bare, channel))
+    }
+    renderer.setClearColor(0, 1)
+    const [byMoon, byLamp] = [await drawn(moonlight), await drawn(lamp)]
+    const say = (parts: readonly number[]): string => parts.map(x => x.toExponential(3)).join(', ')
+    t.note(`by the moon ${say(byMoon)}, by the other ${say(byLamp)} of the wall's light`)
+    expectTrue(byLamp[1] > 0, 'there is rain')
+    expectClose(byMoon, byLamp, { relative: 0.01 }, 'moonlit rain')
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
+  'four lamps light what falls around them as three lights surfaces, by distance and cone',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const camera = new PerspectiveCamera()
+    camera.position.set(40, -7, 12)
+    camera.rotation.set(0.2, 1.1, 0)
+    camera.updateMatrixWorld()
+    const draw = random(5)
+    const near = (spread: number): Vector3 =>
+      new Vector3(draw(), draw(), draw()).subScalar(0.5).multiplyScalar(spread).add(camera.position)
+    const lamps = [
+      new PointLight('#ffffff', 8),
+      new PointLight('#ffffff', 3, 12, 1),
+      new SpotLight('#ffffff', 20, 0, 0.9, 0.5),
+      new SpotLight('#ffffff', 9, 25, 0.6, 0)
+    ]
+    for (const lamp of lamps) {
+      lamp.position.copy(near(16))
+      lamp.updateMatrixWorld()
+      if (!(lamp instanceof SpotLight)) continue
+      lamp.target.position.copy(camera.position)
+      lamp.target.updateMatrixWorld()
+    }
+    const uniforms = lamps.map(lamp => new LampUniforms(lamp))
+    for (const one of uniforms) one.update(camera)
+    const places = Array.from({ length: 200 }, () => near(14))
+    const inputs = places.map(place => place.clone().applyMatrix4(camera.matrixWorldInverse))
+    const found = await evaluateOnGpu(
+      renderer,
+      inputs.map(place => place.toArray()),
+      input => {
+        const light = uniforms.map(one => one.at(input.xyz as never).illuminance.x)
+        return vec4(light[0], light[1], light[2], light[3])
+      }
+    )
+    const lit = [0, 0, 0, 0]
+    places.forEach((place, i) =>
+      lamps.forEach((lamp, k) => {
+        const way = lamp.position.clone().sub(place)
+        const distance = way.length()
+        const { decay, intensity, distance: end } = lamp
+        // Candela by the distance's power, let out towards the lamp's end (Karis 2013), and the cone's edge.
+        const window = end > 0 ? Math.max(1 - (distance / end) ** 4, 0) ** 2 : 1
+        let expected = (intensity * window) / distance ** decay
+        if (lamp instanceof SpotLight) {
+          const axis = lamp.position.clone().sub(lamp.target.position).normalize()
+          const [edge, inside] = [Math.cos(lamp.angle), Math.cos(lamp.angle * (1 - lamp.penumbra))]
+          const part = MathUtils.clamp(
+            (way.dot(axis) / distance - edge) / (inside - edge || 1e-9),
+            0,
+            1
+          )
+          if (lamp.penumbra === 0 && Math.abs(way.dot(axis) / distance - edge) < 1e-3) return
+          expected *= part ** 2 * (3 - 2 * part)
+        }
+        if (expected > 0) lit[k]++
+        const told = `lamp ${k} at ${distance.toFixed(2)} m`
+        expectClose([found[4 * i + k]], [expected], { relative: 2e-4, absolute: 1e-6 }, told)
+      })
+    )
+    t.note(`${lit.join(', ')} of ${places.length} places lit`)
+    expectTrue(lit[0] === 200 && lit.every(count => count > 20), 'lamps light places')
+    expectTrue(lit[2] < 190 && lit[3] < 190, 'cones end')
   },
   { backends: ['webgpu'] }
 )

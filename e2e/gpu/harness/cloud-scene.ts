@@ -34,6 +34,32 @@ export interface CloudScene {
   dispose: () => void
 }
 
+/** Clouds whose noise is not drawn, for what needs none: streaks and shapes are even. */
+export async function evenClouds(
+  t: GpuContext,
+  layers: CloudLayers,
+  place: Place
+): Promise<Pick<CloudScene, 'renderer' | 'field' | 'update' | 'dispose'>> {
+  const renderer = await t.createRenderer()
+  const atmosphere = new Atmosphere().place(place)
+  const camera = new PerspectiveCamera()
+  const field = new CloudField(atmosphere, layers)
+  return {
+    renderer,
+    field,
+    update(seconds = 0) {
+      const view = atmosphere.update(renderer, camera)
+      field.view.update({ renderer, camera } as unknown as NodeFrame)
+      field.update(view, seconds)
+      return view
+    },
+    dispose() {
+      field.dispose()
+      atmosphere.dispose()
+    }
+  }
+}
+
 /** Baked clouds, seen from a place. */
 export async function cloudScene(
   t: GpuContext,

@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest'
-import { heightFog, raindrops } from '@welkin/atmosphere'
+import { AtmosphereParameters, heightFog, raindrops } from '@welkin/atmosphere'
+import { whiteBalancedColumns } from '../../src/air/cpu/color'
 import { HALF_TEXELS, texelCosine } from '../../src/optics/cpu/phaseRow'
 import { rainRow } from '../../src/optics/cpu/rainRow'
 import { throwsEach, wrong } from '../harness/wrong'
@@ -11,6 +12,8 @@ const angles = Array.from(
   { length: TEXELS },
   (_, i) => 180 - (Math.acos(texelCosine(i)) * 180) / Math.PI
 )
+
+const columns = whiteBalancedColumns(new AtmosphereParameters())
 
 const rates = [0.5, 2, 10, 50]
 
@@ -46,6 +49,29 @@ describe('rain', () => {
       expect(mean(41, 42)).toBeGreaterThan(2 * mean(30, 38))
       expect(mean(51, 53)).toBeGreaterThan(2.5 * mean(44, 49))
       expect(mean(56, 60)).toBeGreaterThan(1.3 * mean(44, 49))
+    })
+
+    it(`of ${rate} mm/h has both bows in the colours that one sees, in opposite orders about the dark band`, () => {
+      /** Colour that sunlight gets, in linear sRGB over white, in the mean between two angles. */
+      const colorOf = (from: number, to: number): number[] => {
+        const inside = angles.map((_, i) => i).filter(i => angles[i] >= from && angles[i] <= to)
+        return [0, 1, 2].map(c => {
+          const ofTexel = (i: number): number =>
+            columns.reduce((sum, column, k) => sum + column[c] * texels[4 * i + k], 0)
+          return inside.reduce((sum, i) => sum + ofTexel(i), 0) / inside.length
+        })
+      }
+      const redness = ([red, , blue]: readonly number[]): number => red / blue
+      // Edges of both bows, from red to violet and from violet to red; and the band between.
+      const [violet, red] = [colorOf(40.2, 41), colorOf(41.9, 42.5)]
+      const [outerRed, outerViolet] = [colorOf(50, 51.4), colorOf(53, 54)]
+      const band = colorOf(44, 49)
+      expect(redness(red)).toBeGreaterThan(1.5)
+      expect(redness(violet)).toBeLessThan(1)
+      expect(redness(outerRed)).toBeGreaterThan(1.5)
+      expect(redness(outerViolet)).toBeLessThan(1)
+      for (const edge of [violet, red, outerRed, outerViolet])
+        expect(Math.max(...edge)).toBeGreaterThan(2 * Math.max(...band))
     })
 
     it(`of ${rate} mm/h scatters all light, most of it on`, () => {

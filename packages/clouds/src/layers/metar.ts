@@ -28,8 +28,8 @@ const TELLING = /^(?:\d{6}Z|SKC|CLR|NSC|NCD|CAVOK)$/
 const WIND = /^(?:(\d{3})P?(\d{2,3})|VRB\d{2,3}|\/{5})(?:GP?\d{2,3})?(KT|MPS)$/
 const CLOUD = /^(FEW|SCT|BKN|OVC|VV|\/{3})([0-5]\d\d|\/{3})(CB|TCU|\/{3})?$/
 
-/** Present weather that falls: intensity, descriptors, kinds. */
-const FALLING = /^([-+]?)(?:SH|TS|FZ|BL|DR|PR)*((?:DZ|RA|SN|SG|PL|GR|GS|UP)+)$/
+/** Present weather that falls: intensity, descriptors, kinds. Drifting and blowing snow (DRSN, BLSN) lies already. */
+const FALLING = /^([-+]?)(?:SH|TS|FZ)*((?:DZ|RA|SN|SG|PL|GR|GS|UP)+)$/
 
 /** Temperature and dew point [°C]. */
 const TEMPERATURE = /^(M?)(\d\d)\/(?:M?\d\d|\/\/)?$/

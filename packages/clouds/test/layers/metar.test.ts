@@ -6,6 +6,7 @@ import {
   visibilityFromMETAR,
   type CloudLayerParameters
 } from '../../src'
+import { snowShareOf } from '../twins/precipitation'
 
 const read = (report: string, options = {}): CloudLayerParameters[] =>
   [...cloudLayersFromMETAR(report, options)].map(({ parameters }) => parameters)
@@ -235,6 +236,48 @@ describe('weather of a METAR', () => {
     expect(snow?.freezingLevel).toBeCloseTo(-308, 0)
     const [rain] = falls('EGLL 221150Z 21010KT 5000 +SHRAGS SCT020CB 13/10 Q0998')
     expect(rain).toMatchObject({ rate: 20, share: 0.5, hail: 0.3, freezingLevel: 2000 })
+  })
+
+  it('falls no more where the wind raises what lies, or where it fell before', () => {
+    const fallsFrom = (weather: string) =>
+      falls(`ENGM 221150Z 01025KT 0800 ${weather} OVC010 M05/M07 Q1001`)[0]?.rate
+    expect(fallsFrom('BLSN')).toBe(undefined)
+    expect(fallsFrom('DRSN')).toBe(undefined)
+    expect(fallsFrom('BR RESN')).toBe(undefined)
+    expect(fallsFrom('-SN BLSN')).toBe(0.5)
+    expect(fallsFrom('BLSN +SN')).toBe(6)
+  })
+
+  it('is at the ground what is reported, however warm or high it is there', () => {
+    const grounds = fc.record({
+      temperature: fc.integer({ min: -40, max: 45 }),
+      stationElevation: fc.integer({ min: 0, max: 4500 })
+    })
+    const snowAt = (weather: string, temperature: number, stationElevation: number): number => {
+      const digits = String(Math.abs(temperature)).padStart(2, '0')
+      const report = `EDDM 221150Z 24008KT 3000 ${weather} OVC020 ${temperature < 0 ? 'M' : ''}${digits}/// Q1005`
+      const [layer] = read(report, { precipitation: true, stationElevation })
+      return snowShareOf(stationElevation, layer.precipitation!.freezingLevel!)
+    }
+    fc.assert(
+      fc.property(grounds, ({ temperature, stationElevation }) => {
+        expect(snowAt('-SHSN', temperature, stationElevation)).toBe(1)
+        expect(snowAt('FZRA', temperature, stationElevation)).toBe(0)
+        expect(snowAt('+TSRAGR', temperature, stationElevation)).toBe(0)
+      })
+    )
+  })
+
+  it('has the visibility of mist and fog, and no layer of them', () => {
+    for (const [weather, metres] of [
+      ['3000 BR', 3000],
+      ['0400 FG', 400]
+    ] as const) {
+      const report = `EGLL 221150Z 00000KT ${weather} FEW020 08/08 Q1025`
+      expect(visibilityFromMETAR(report)).toBe(metres)
+      expect(read(report, { precipitation: true })).toHaveLength(1)
+      expect(falls(report)).toEqual([null])
+    }
   })
 
   it.for([

@@ -1,5 +1,6 @@
 import { Vector3 } from 'three'
 import { extinctionForm, fallForm, STRONGEST } from '../../src/precipitation/fallForm'
+import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
 import { dry } from '../../src/layers/precipitation'
 import { windAxis } from '../../src/layers/wind'
 import { weatherAt, type CloudState } from './density'
@@ -14,6 +15,36 @@ export function extinctionOf(rate: number, snow: number, hail: number): number {
   const perKm =
     (1 - snow) * rain[0] * rate ** rain[1] + snow * flakes[0] * rate ** flakes[1] + stones * hail
   return perKm / 1000
+}
+
+/** Share of snow at an altitude [m]: none from a depth of `melting` below the freezing level on, by Hermite's cubic. */
+export function snowShareOf(altitude: number, freezingLevel: number): number {
+  const melted = Math.min(Math.max((freezingLevel - altitude) / fallForm.melting, 0), 1)
+  return 1 - melted ** 2 * (3 - 2 * melted)
+}
+
+/** Rates of water that fall from a layer as drops or flakes, and as hail [mm/h], and the share of snow. */
+export interface FallenOf {
+  rate: number
+  hail: number
+  snow: number
+}
+
+/**
+ * Precipitation under a column of a rank at an altitude [m], without streaks: `fallenFrom` of tsl/fall.ts.
+ *
+ * It sets in over a part of the layer above its base, evaporates below it, and is in part hail under the strongest columns.
+ */
+export function fallenOf(layer: CloudLayerParameters, rank: number, altitude: number): FallenOf {
+  const { baseAltitude: base, topAltitude: top } = layer
+  const { rate, virgaDepth, freezingLevel, hail } = { ...dry, ...layer.precipitation }
+  const [from, to] = fallForm.hailFrom
+  const strength = Math.min(Math.max((rank - from) / (to - from), 0), 1)
+  const begun = (base - altitude) / (fallForm.onset * (top - base)) + 1
+  const all =
+    rateOf(rate, rank, Math.max(base - altitude, 0), virgaDepth) * Math.min(Math.max(begun, 0), 1)
+  const stones = all * hail * strength ** 2 * (3 - 2 * strength)
+  return { rate: all - stones, hail: stones, snow: snowShareOf(altitude, freezingLevel) }
 }
 
 /**
