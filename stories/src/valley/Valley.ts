@@ -102,7 +102,8 @@ export class Valley {
   readonly #layers = new CloudLayers(valleyLayers)
   readonly #falling = new ValleyPrecipitation()
   readonly #style = airStyle()
-  readonly #mist = heightFog({ base: ALTITUDE + 3, falloff: 20, density: 0 })
+  // Thin enough over the lake that the village shows through it, and low: roofs, trees and slopes stand over its top.
+  readonly #mist = heightFog({ base: ALTITUDE + 3, falloff: 14, density: 0 })
   readonly #moon = moon()
   readonly #glows = [milkyWay(), stars(), airglow()] as const
   readonly #lamps = new StreetLamps(doors())
