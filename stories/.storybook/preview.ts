@@ -4,7 +4,9 @@ const preview: Preview = {
   parameters: {
     layout: 'fullscreen',
     options: {
-      storySort: { order: ['Valley, all day', 'Gallery', 'Globe', 'Plain scene', 'Tables'] }
+      storySort: {
+        order: ['Valley, all day', 'Gallery', 'Globe', 'Sandbox', 'Plain scene', 'Tables']
+      }
     }
   }
 }

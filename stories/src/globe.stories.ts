@@ -18,7 +18,7 @@ const meta: Meta<GlobeArgs> = {
   argTypes: {
     place: {
       name: 'Camera',
-      description: 'Where the camera goes; fly on from there with the mouse',
+      description: 'Where the camera goes; fly on from there with the mouse, WASD and QE',
       ...choiceOf(PLACES)
     },
     clouds: {

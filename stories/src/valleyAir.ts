@@ -42,6 +42,8 @@ export interface ValleyAir {
   readonly cascades: CSMShadowNode
   /** Sunlight and moonlight. */
   readonly directLights: readonly [SunDirectionalLight, MoonDirectionalLight]
+  /** Light of the sky in sunlight. */
+  readonly daySky: SkyLightProbe
   /** Light of the sky in moonlight, and of stars and airglow. */
   readonly nightSky: readonly [SkyLightProbe, NightLightProbe]
   /** The finished picture, with the distance along the camera's axis in alpha. */
@@ -127,6 +129,7 @@ export function valleyAir(
     flare,
     cascades,
     directLights: [sun, moonlight],
+    daySky: sky,
     nightSky: [moonlitSky, night],
     picture,
     exposure,

@@ -24,6 +24,9 @@ const SAMPLES = 6
 /** Pictures for each that occlusion is found for: things keep theirs over a few. */
 const EVERY = 4
 
+/** Pictures for which it is found on after the camera has come to rest: twice, the second time for what was hidden at the first. */
+const SETTLING = 2 * EVERY
+
 /** Pixels along a side over those of the picture. */
 const COARSE = 0.5
 
@@ -44,7 +47,12 @@ export class LastOcclusion {
   readonly #occlusion: ReturnType<typeof ao>
   readonly #toScreen = uniform(new Matrix4()).setGroup(renderGroup)
   readonly #texel = uniform(new Vector2())
+  /** Camera of the last picture: view and projection. */
+  readonly #view = new Matrix4()
+  readonly #projection = new Matrix4()
   #pictures = 0
+  /** Pictures since the camera moved or things changed. */
+  #still = 0
 
   /** @param depth - That of the scene's pass, as the renderer writes it. */
   constructor(renderer: Renderer, depth: TextureNode, camera: PerspectiveCamera) {
@@ -69,11 +77,25 @@ export class LastOcclusion {
     this.#pass = new FragmentPass('Occlusion', vec4(smooth, viewZ.negate(), 0, 1))
   }
 
-  /** Keeps the occlusion of every fourth picture once it was drawn, and its camera. */
+  /** Has it found anew: other things are drawn now. */
+  reset(): void {
+    this.#still = 0
+  }
+
+  /** Keeps the occlusion of every fourth picture once it was drawn, and its camera; of none while camera and things stand still. */
   update(renderer: Renderer, camera: PerspectiveCamera): void {
-    if (this.#pictures++ % EVERY !== 0) return
     const { width, height } = this.#depth.value.image as { width: number; height: number }
-    this.#target.setSize(Math.ceil(width * COARSE), Math.ceil(height * COARSE))
+    const [columns, rows] = [width, height].map(pixels => Math.ceil(pixels * COARSE))
+    const isSameSize = columns === this.#target.width && rows === this.#target.height
+    const isSameView =
+      this.#view.equals(camera.matrixWorldInverse) &&
+      this.#projection.equals(camera.projectionMatrix)
+    this.#view.copy(camera.matrixWorldInverse)
+    this.#projection.copy(camera.projectionMatrix)
+    if (!isSameSize || !isSameView) this.reset()
+    const isSettled = this.#still++ >= SETTLING
+    if (isSettled || this.#pictures++ % EVERY !== 0) return
+    this.#target.setSize(columns, rows)
     this.#texel.value.set(1 / this.#target.width, 1 / this.#target.height)
     this.#pass.render(renderer, this.#target)
     this.#toScreen.value.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)

@@ -69,6 +69,9 @@ const NIGHT_LIGHTS = 4
 /** Elevation of the sun below which it lights no mountain of the valley [degrees]. */
 const SUNLIGHT = -3
 
+/** Elevation of the sun below which the sky that it lights is darker than that of stars and airglow [degrees]. */
+const TWILIGHT = -20
+
 /** Brighter pictures while snow lies, or it is grey [stops]. */
 const SNOW_COMPENSATION = 0.8
 
@@ -99,7 +102,8 @@ export class Valley {
   readonly #layers = new CloudLayers(valleyLayers)
   readonly #falling = new ValleyPrecipitation()
   readonly #style = airStyle()
-  readonly #mist = heightFog({ base: ALTITUDE + 3, falloff: 20, density: 0 })
+  // Thin enough over the lake that the village shows through it, and low: roofs, trees and slopes stand over its top.
+  readonly #mist = heightFog({ base: ALTITUDE + 3, falloff: 14, density: 0 })
   readonly #moon = moon()
   readonly #glows = [milkyWay(), stars(), airglow()] as const
   readonly #lamps = new StreetLamps(doors())
@@ -114,6 +118,7 @@ export class Valley {
   readonly #cascadeTurns: CascadeTurns
   readonly #moonShadow: MoonShadow
   readonly #moonlights
+  readonly #daySky
   readonly #nightSky
   readonly #sun
   readonly #environment
@@ -131,6 +136,7 @@ export class Valley {
     this.#cascades = air.cascades
     this.#targets = { shafts, node, sky: this.#glows, luna: this.#moon, flare, exposure }
     this.#cascadeTurns = new CascadeTurns(air.cascades)
+    this.#daySky = air.daySky
     this.#nightSky = air.nightSky[1]
     const [sun, moonlight] = air.directLights
     this.#sun = sun
@@ -222,7 +228,7 @@ export class Valley {
     this.scene.environmentIntensity = Number(environment)
     this.#village.object.visible = village
     this.#water.mesh.visible = water
-    const keys = ['trees', 'village', 'quality'] as const
+    const keys = ['trees', 'village', 'water', 'quality'] as const
     if (keys.some(key => this.#state[key] !== before[key])) this.#redrawShadows()
     this.#applyWeather(atOnce)
     this.#finish.set(this.#state)
@@ -235,10 +241,11 @@ export class Valley {
     this.cycle.hour = hour
   }
 
-  /** Has shadow maps drawn anew: other things cast shadows now. */
+  /** Has shadow maps and ambient occlusion drawn anew: other things cast shadows now. */
   #redrawShadows(): void {
     this.#cascadeTurns.reset()
     this.#moonShadow.reset()
+    this.#finish.redrawOcclusion()
   }
 
   #applyWeather(atOnce = false): void {
@@ -283,6 +290,7 @@ export class Valley {
     const isNight = elevation < NIGHT_LIGHTS
     const isMoonlit = this.#moonShadow.update(this.camera, isNight)
     for (const light of this.#moonlights) setLit(light, isMoonlit)
+    setLit(this.#daySky, elevation > TWILIGHT)
     setLit(this.#nightSky, isNight)
     setLit(this.#sun, elevation > SUNLIGHT)
     this.#village.light(share, luminanceScale)
@@ -292,7 +300,7 @@ export class Valley {
     this.pipeline.render()
     this.#finish.afterDrawn()
     this.#renderer.autoClear = autoClear
-    this.#mirror.update(this.#renderer, this.camera, luminanceScale)
+    if (this.#water.mesh.visible) this.#mirror.update(this.#renderer, this.camera, luminanceScale)
   }
 
   /** Time of the water's waves and the clouds' drift [s]. */

@@ -107,6 +107,11 @@ export class ValleyFinish {
     this.#occlusion?.update(this.#renderer, this.#camera)
   }
 
+  /** Has occlusion found anew: other things are drawn now. */
+  redrawOcclusion(): void {
+    this.#occlusion?.reset()
+  }
+
   /** Light of the scene after all that happens in the camera. */
   #picture(effects: ValleyEffects): Node {
     const { scenePass, exposure, depth } = this.#air
