@@ -29,10 +29,11 @@ const FULL = { occlusion: true, motionBlur: true, bloom: false } as const
 /** The full moon stands high. */
 const WINTER = { date: Date.UTC(2026, 11, 24), hour: 22 } as const
 
-/** Weathers and hours with all that is on, and what one of them costs as the story opens. */
-const ROWS: readonly (readonly [name: string, changes: Partial<ValleyState>])[] = [
+/** Weathers and hours with all that is on, what one of them costs as the story opens, and while the camera turns [rad/s]. */
+const ROWS: readonly (readonly [name: string, changes: Partial<ValleyState>, turn?: number])[] = [
   ['fair, as the story opens, without bloom', { bloom: false }],
   ['fair', FULL],
+  ['fair, while the camera turns', FULL, 0.25],
   ['broken', { ...FULL, weather: 'broken' }],
   ['overcast', { ...FULL, weather: 'overcast' }],
   ['mist', { ...FULL, weather: 'mist' }],
@@ -80,7 +81,8 @@ export async function timeValley(
 
   const measure = async (
     changes: Partial<ValleyState>,
-    frames: number
+    frames: number,
+    turn = 0
   ): Promise<[PassTime[], number]> => {
     const state = { ...openingState, ...changes }
     valley.set(state, true)
@@ -90,6 +92,8 @@ export async function timeValley(
     for (let frame = 0; frame < WARM_UP + frames; frame++) {
       nextFrame()
       valley.time = time += STEP
+      // To and fro, so that it sees the same on the whole.
+      valley.camera.rotateY(turn * STEP * (frame % 60 < 30 ? 1 : -1))
       renderer.setRenderTarget(target)
       const start = performance.now()
       valley.render(STEP)
@@ -105,7 +109,9 @@ export async function timeValley(
   const [features, cpuMs] = await measure({}, often)
   const totalMs = sumOf(features)
   const rows: ValleyCost['rows'] = []
-  for (const [name, changes] of ROWS) rows.push([name, (await measure(changes, often))[0]])
+  for (const [name, changes, turn] of ROWS) {
+    rows.push([name, (await measure(changes, often, turn))[0]])
+  }
   const parts: PassTime[] = []
   for (const part of PARTS) {
     parts.push([part, totalMs - sumOf((await measure({ [part]: false }, frames))[0])])

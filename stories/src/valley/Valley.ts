@@ -102,7 +102,6 @@ export class Valley {
   readonly #layers = new CloudLayers(valleyLayers)
   readonly #falling = new ValleyPrecipitation()
   readonly #style = airStyle()
-  // Thin enough over the lake that the village shows through it, and low: roofs, trees and slopes stand over its top.
   readonly #mist = heightFog({ base: ALTITUDE + 3, falloff: 14, density: 0 })
   readonly #moon = moon()
   readonly #glows = [milkyWay(), stars(), airglow()] as const
@@ -252,7 +251,7 @@ export class Valley {
     const { turbidity, mist } = this.#weather.current
     const { clouds, cloudShadows, precipitation } = this.#state
     this.#falling.set(this.#falls(), atOnce)
-    this.#weather.apply(this.#layers, clouds, cloudShadows, precipitation)
+    this.#weather.apply(this.#layers, clouds, this.#state.mist, cloudShadows, precipitation)
     this.#mist.density = this.#state.mist ? mist : 0
     // In steps: the tables are made anew for each.
     const stepped = Math.round(turbidity * 4) / 4

@@ -9,7 +9,7 @@ export interface Weather {
   readonly cirrus: number
   /** Aerosol of the air over that of clear air. */
   readonly turbidity: number
-  /** Extinction of the mist over the lake [1/m]. */
+  /** Extinction of the even part of the mist over the lake [1/m]; banks of fog come with it. */
   readonly mist: number
   /** Rates of rain from cumulus, and of snow from the deck, as water [mm/h]. */
   readonly rain: number
@@ -22,7 +22,7 @@ export const weathers = {
   fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...dry },
   clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...dry },
   broken: { cumulus: 0.4, deck: 0.55, cirrus: 0.2, turbidity: 2.5, mist: 0, ...dry },
-  mist: { cumulus: 0.08, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.025, ...dry },
+  mist: { cumulus: 0.08, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.008, ...dry },
   overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...dry },
   shower: { cumulus: 0.35, deck: 0.45, cirrus: 0.1, turbidity: 2.25, mist: 0, rain: 6, snow: 0 },
   snow: { cumulus: 0.1, deck: 0.95, cirrus: 0, turbidity: 3, mist: 0, rain: 0, snow: 1.5 }
@@ -30,21 +30,41 @@ export const weathers = {
 
 export type WeatherName = keyof typeof weathers
 
-/** Layers that `WeatherBlend` sets: cumulus, a deck over them, cirrus. */
+/** Form of the deck. */
+const deckForm = {
+  baseAltitude: 2700,
+  topAltitude: 3400,
+  weatherScale: 1,
+  shapeScale: 1,
+  edgeSoftness: 0.3,
+  wind: { east: 10, north: 4 }
+}
+
+/** Form of banks of fog that lie in the valley: height fog alone is a level sheet. */
+const fogForm: typeof deckForm = {
+  baseAltitude: 595,
+  topAltitude: 720,
+  weatherScale: 0.12,
+  shapeScale: 0.12,
+  edgeSoftness: 0.8,
+  wind: { east: 1, north: 0.3 }
+}
+
+/** Layers that `WeatherBlend` sets: cumulus, a deck over them or banks of fog, cirrus. */
 export const valleyLayers = [
   { baseAltitude: 1500, topAltitude: 2700, coverage: 0, wind: { east: 6, north: 2 } },
   {
-    baseAltitude: 2700,
-    topAltitude: 3400,
+    ...deckForm,
     coverage: 0,
     density: 0.04,
     profileExponent: 1.2,
-    edgeSoftness: 0.3,
-    weatherWeights: [0, 1, 0, 0] as [number, number, number, number],
-    wind: { east: 10, north: 4 }
+    weatherWeights: [0, 1, 0, 0] as [number, number, number, number]
   },
   { ...cloudPreset('cirrus').at(0).parameters, coverage: 0, wind: { east: 26, north: -8 } }
 ]
+
+/** Share of the valley that banks of fog cover in the mist. */
+const FOGGY = 0.9
 
 /** Rates below cumulus and below the deck over that around the camera, which stands between their cores [–]. */
 const SHAFTS = [4, 2] as const
@@ -88,14 +108,25 @@ export class WeatherBlend {
 
   /**
    * @param hasClouds - False for a sky without any.
+   * @param hasMist - False for a valley without banks of fog.
    * @param shadow - False for clouds without shadows.
    * @param falls - False for clouds without rain and snow.
    */
-  apply(layers: CloudLayers, hasClouds: boolean, shadow: boolean, falls: boolean): void {
-    const { cumulus, deck, cirrus, rain, snow } = this.current
+  apply(
+    layers: CloudLayers,
+    hasClouds: boolean,
+    hasMist: boolean,
+    shadow: boolean,
+    falls: boolean
+  ): void {
+    const { cumulus, deck, cirrus, mist, rain, snow } = this.current
     const rates = [rain * SHAFTS[0], rain * SHAFTS[1] + snow, 0]
+    // The deck and banks of fog are one layer: one goes before the other comes.
+    const foggy = (hasMist ? mist / weathers.mist.mist : 0) - deck
+    layers.at(1).set(foggy > 0 ? fogForm : deckForm)
+    const covers = [cumulus, foggy > 0 ? foggy * FOGGY : -foggy, cirrus]
     const freezingLevel = snow > 0 ? 0 : FREEZING
-    for (const [i, coverage] of [cumulus, deck, cirrus].entries()) {
+    for (const [i, coverage] of covers.entries()) {
       const rate = hasClouds && falls ? rates[i] : 0
       const precipitation = rate > 0 ? { rate, share: 0.8, freezingLevel } : null
       layers.at(i).set({ coverage: hasClouds ? coverage : 0, shadow, precipitation })
