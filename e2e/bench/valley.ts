@@ -93,7 +93,7 @@ export async function timeValley(
       nextFrame()
       valley.time = time += STEP
       // To and fro, so that it sees the same on the whole.
-      valley.camera.rotateY(turn * STEP * (frame % 60 < 30 ? 1 : -1))
+      valley.camera.rotateY(turn * STEP * (frame % 30 < 15 ? 1 : -1))
       renderer.setRenderTarget(target)
       const start = performance.now()
       valley.render(STEP)
