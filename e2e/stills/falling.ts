@@ -43,12 +43,13 @@ export const falling = [
   },
   {
     name: 'snow-shower',
-    about: 'snow that trails far behind its clouds, bright in the sun, grey in their shadow',
-    clouds: { preset: 'snowShower', coverage: 0.1 },
-    place: { longitude: 20, latitude: 45 },
+    about:
+      'snow below clouds that are bright in a low sun and dark at their bases, grey veils between them',
+    clouds: { preset: 'snowShower', coverage: 0.15, layer: { wind: { east: 5, north: 2 } } },
+    place: { longitude: 140.6798, latitude: 35.2496 },
     altitude: 60,
-    sun: { elevation: 18, azimuth: 280 },
-    view: { azimuth: 20, pitch: 9 },
+    sun: { elevation: 14, azimuth: 206 },
+    view: { azimuth: 60, pitch: 9 },
     land: 'snow'
   }
 ] as const

@@ -36,6 +36,7 @@ const deckForm = {
   topAltitude: 3400,
   weatherScale: 1,
   shapeScale: 1,
+  detailAmount: 1,
   edgeSoftness: 0.3,
   wind: { east: 10, north: 4 }
 }
@@ -43,9 +44,10 @@ const deckForm = {
 /** Form of banks of fog that lie in the valley: height fog alone is a level sheet. */
 const fogForm: typeof deckForm = {
   baseAltitude: 595,
-  topAltitude: 720,
+  topAltitude: 690,
   weatherScale: 0.12,
-  shapeScale: 0.12,
+  shapeScale: 0.25,
+  detailAmount: 0,
   edgeSoftness: 0.8,
   wind: { east: 1, north: 0.3 }
 }
