@@ -4,7 +4,7 @@ import {
   type AirOccluder,
   type LightShaftsOptions
 } from '@welkin/atmosphere'
-import { Vector3 } from 'three'
+import { PCFShadowMap, Vector3, VSMShadowMap } from 'three'
 import { uniform, vec4 } from 'three/tsl'
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
 import { quantile } from '../../validate/score'
@@ -276,6 +276,45 @@ gpuTest(
     )
     dispose()
   }
+)
+
+// WebGPU loads depths, whatever they are; WebGL compares with those that are made for that.
+gpuTest(
+  "reads the shadow maps of now: three makes others when a light casts anew, and VSM's",
+  async t => {
+    for (const type of [PCFShadowMap, VSMShadowMap]) {
+      const renderer = await t.createRenderer(size)
+      renderer.shadowMap.type = type
+      const { scene, light, draw, dispose } = stage(renderer, 15)
+      const tower = addBox(scene, [0, 200, -600], [200, 500, 40])
+      const found: number[][] = []
+      for (const [i, x] of [-200, 200].entries()) {
+        light.castShadow = false
+        tower.position.x = x
+        const lit = await draw()
+        light.castShadow = true
+        await draw()
+        const dark = await draw()
+        found[i] = [0, size.width / 2].map(from => {
+          let lost = 0
+          for (let x = from; x < from + size.width / 2; x++) {
+            for (let y = 2; y < 12; y++) lost += 1 - dark.at(x, y)[1] / lit.at(x, y)[1]
+          }
+          return lost
+        })
+      }
+      t.note(
+        found
+          .flat()
+          .map(lost => lost.toFixed(2))
+          .join(', ')
+      )
+      expectTrue(found[0][0] > 1 && found[0][0] > 3 * found[0][1], 'a tower on the left, and dark')
+      expectTrue(found[1][1] > 1 && found[1][1] > 3 * found[1][0], 'and on the right')
+      dispose()
+    }
+  },
+  { backends: ['webgl'] }
 )
 
 gpuTest("has an occluder of one's own beyond all shadow maps", async t => {

@@ -71,7 +71,9 @@ export class GroundShadow extends HeightFieldShadow {
   #next: Uint16Array
   #found = 0
   readonly #axes = new Matrix4()
-  /** Middle of the square in use, on the ellipsoid, ECEF [m]. */
+  /** The square in use, from its texture coordinates and heights to ECEF [m]. */
+  readonly #square = new Matrix4()
+  /** Its middle, on the ellipsoid, ECEF [m]. */
   readonly #middle = new Vector3(NaN, NaN, NaN)
 
   /** @throws If an argument is missing or out of its range, or the atmosphere's world is flat. */
@@ -104,11 +106,20 @@ export class GroundShadow extends HeightFieldShadow {
   }
 
   /**
-   * Moves on with a viewer; called for each camera that draws its shadows.
+   * Moves on with a viewer, and with the world's origin; called for each camera that draws its shadows.
    *
    * @param position - World [units].
    */
   override follow(position: Vector3): void {
+    this.#find(position)
+    // The origin of the world, its axes and units may have changed since.
+    if (!Number.isNaN(this.#middle.x)) {
+      this.matrix.copy(this.atmosphere.worldToECEF).invert().multiply(this.#square)
+    }
+  }
+
+  /** Finds some heights of the next square, once the camera is far from the middle of the one in use. */
+  #find(position: Vector3): void {
     const { atmosphere, width, texels } = this
     if (this.#found === 0) {
       _subpoint.copy(position).applyMatrix4(atmosphere.worldToECEF)
@@ -149,7 +160,7 @@ export class GroundShadow extends HeightFieldShadow {
 
   /** Puts the next square in the place of the one in use. */
   #change(): void {
-    const { matrix, width } = this
+    const { width } = this
     const { image } = this.heights
     const used = image.data as Uint16Array
     image.data = this.#next
@@ -157,8 +168,8 @@ export class GroundShadow extends HeightFieldShadow {
     this.#found = 0
     this.heights.needsUpdate = true
     this.#middle.setFromMatrixPosition(this.#axes)
-    matrix.makeScale(width, width, 1).setPosition(-width / 2, -width / 2, 0)
-    matrix.premultiply(this.#axes).premultiply(_toWorld.copy(this.atmosphere.worldToECEF).invert())
+    this.#square.makeScale(width, width, 1).setPosition(-width / 2, -width / 2, 0)
+    this.#square.premultiply(this.#axes)
     this.version++
   }
 }

@@ -115,6 +115,8 @@ export class LightShafts implements ShadowedShafts {
     const lightCamera = (light?.shadow?.camera ?? null) as Partial<OrthographicCamera> | null
     if (!lightCamera?.isOrthographicCamera)
       fail('LightShafts', 'light must be a DirectionalLight', light)
+    const { atmosphere: lit = atmosphere } = light as { atmosphere?: Atmosphere }
+    if (lit !== atmosphere) fail('LightShafts', 'light must be of the same atmosphere', light)
     this.atmosphere = atmosphere
     this.camera = camera
     this.light = light

@@ -45,6 +45,7 @@ export class SunPolarMap {
   /** Greatest ρ of a shadow map [m]; 0 without maps. */
   readonly maximumRho = number()
   #sources: ShadowMapNodes[] = []
+  #isCompared = false
   #pass: FragmentPass | null = null
 
   constructor() {
@@ -78,9 +79,12 @@ export class SunPolarMap {
     this.#pass!.render(renderer, this.target)
   }
 
-  /** Compiles the shader anew when there are more or fewer maps. */
+  /** Compiles the shader anew when there are more or fewer maps, or such that are read in another way. */
   #setSources(renderer: Renderer, maps: readonly ShadowMap[]): void {
-    if (this.#sources.length !== maps.length) {
+    const isWebGPU = 'isWebGPUBackend' in renderer.backend
+    const isCompared = !isWebGPU && maps.some(({ depth }) => depth.compareFunction !== null)
+    if (this.#sources.length !== maps.length || this.#isCompared !== isCompared) {
+      this.#isCompared = isCompared
       this.#sources = maps.map(({ depth }) => ({
         depth: texture(depth) as TextureNode & { value: DepthTexture },
         size: vector2(),
@@ -88,10 +92,7 @@ export class SunPolarMap {
         bounds: vector4(),
         metersPerDepth: number()
       }))
-      const storage: DepthStorage = {
-        isReversed: renderer.reversedDepthBuffer,
-        isCompared: !('isWebGPUBackend' in renderer.backend)
-      }
+      const storage: DepthStorage = { isReversed: renderer.reversedDepthBuffer, isCompared }
       this.#pass?.dispose()
       this.#pass = new FragmentPass(
         'Welkin.LightShafts',

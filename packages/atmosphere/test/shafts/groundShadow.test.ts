@@ -1,4 +1,4 @@
-import { DataUtils, Vector3 } from 'three'
+import { DataUtils, Matrix4, Vector3 } from 'three'
 import { expect, it } from 'vitest'
 import { Atmosphere, groundShadow, type GroundShadow } from '@welkin/atmosphere'
 
@@ -24,12 +24,17 @@ const above = (longitude: number, latitude: number): Vector3 =>
   ellipsoid.geodeticToECEF({ longitude, latitude, height: 5000 })
 
 /** Heights in use, and how far they are from the ground, at most [m]. */
-function worstError(shadow: GroundShadow, heights: Uint16Array): number {
+function worstError(
+  shadow: GroundShadow,
+  heights: Uint16Array,
+  worldToECEF = new Matrix4()
+): number {
   let worst = 0
   const point = new Vector3()
   for (const [n, height] of heights.entries()) {
     const [x, y] = [n % TEXELS, Math.floor(n / TEXELS)].map(texel => (texel + 0.5) / TEXELS)
-    point.set(x, y, DataUtils.fromHalfFloat(height)).applyMatrix4(shadow.matrix)
+    point.set(x, y, DataUtils.fromHalfFloat(height))
+    point.applyMatrix4(shadow.matrix).applyMatrix4(worldToECEF)
     const place = ellipsoid.ecefToGeodetic(point)
     worst = Math.max(worst, Math.abs(place.height - heightAt(place.longitude, place.latitude)))
   }
@@ -64,6 +69,26 @@ it('has the ground where it is, on the round planet, and follows the viewer', ()
   shadow.refresh()
   shadow.follow(above(1.4, 47))
   expect([shadow.version, asked]).toEqual([3, 3 * TEXELS ** 2])
+  shadow.dispose()
+})
+
+it('stays over the ground when the origin, the axes and the units of the world change', () => {
+  const moving = new Atmosphere().place({ longitude: 1, latitude: 47 })
+  const inWorld = {
+    heightBelow: (position: Vector3) =>
+      ground.heightBelow(position.clone().applyMatrix4(moving.worldToECEF))
+  }
+  const shadow = groundShadow(moving, inWorld, { width: WIDTH, texels: TEXELS })
+  shadow.follow(new Vector3(0, 2, 0))
+  const { heights, version } = shadow
+  const error = (): number =>
+    worstError(shadow, heights.image.data as Uint16Array, moving.worldToECEF)
+  expect(error()).toBeLessThan(3)
+  moving.place({ longitude: 1.05, latitude: 47.02, height: 300 })
+  moving.metersPerUnit = 10
+  shadow.follow(new Vector3(0, 0.2, 0))
+  expect(shadow.version).toBe(version)
+  expect(error()).toBeLessThan(3)
   shadow.dispose()
 })
 

@@ -9,7 +9,6 @@ import {
   min,
   mix,
   step,
-  texture,
   textureLoad,
   uv,
   vec2,
@@ -36,7 +35,7 @@ export interface ShadowMapNodes {
 export interface DepthStorage {
   /** Greater is nearer. */
   readonly isReversed: boolean
-  /** Depths can be read only by comparing: WebGL, from textures made for that. */
+  /** Depths can be read only by comparing: in WebGL, from textures made for that. */
   readonly isCompared: boolean
 }
 
@@ -53,7 +52,8 @@ const EMPTY = 3e-5
 function comparedDepth(depth: TextureNode, at: Vec2, { isReversed }: DepthStorage): Float {
   const low = float(0).toVar()
   const width = float(0.5).toVar()
-  const compared = texture(depth.value, at) as unknown as { compare(to: Float): Vec4 }
+  // A sample of the node, not of its texture now: three makes another when a light casts shadows anew.
+  const compared = depth.sample(at) as unknown as { compare(to: Float): Vec4 }
   loop('comparison', COMPARISONS, () => {
     const middle = low.add(width).toConst() as Float
     const passes = compared.compare(middle).r.greaterThan(0.5)
