@@ -1,5 +1,5 @@
 import { Matrix4 } from 'three'
-import type { Camera } from 'three'
+import type { Camera, OrthographicCamera } from 'three'
 import { checkOptions, fail } from '@welkin/geo'
 
 /** Defaults, and the options that are not undefined in place of them. */
@@ -56,4 +56,16 @@ export function checkOrientation(where: string, value: Matrix4 | null): void {
 /** @throws If it is no camera. */
 export function checkCamera(where: string, camera: Camera): void {
   if (!camera?.isCamera) fail(where, 'camera must be a Camera', camera)
+}
+
+/** @throws If a light's rays are not parallel, or it is one of another atmosphere. */
+export function checkShadowLight(
+  where: string,
+  light: { readonly shadow?: { readonly camera: Camera }; readonly atmosphere?: object },
+  atmosphere: object
+): void {
+  const camera = (light?.shadow?.camera ?? null) as Partial<OrthographicCamera> | null
+  if (!camera?.isOrthographicCamera) fail(where, 'light must be a DirectionalLight', light)
+  if ((light.atmosphere ?? atmosphere) !== atmosphere)
+    fail(where, 'light must be of the same atmosphere', light)
 }

@@ -4,7 +4,7 @@ import { screenCoordinate, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { checkBoolean, checkChoice, checkNonNegative, fail, setOptions } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
-import { checkCamera } from '../check'
+import { checkCamera, checkShadowLight } from '../check'
 import type { Float } from '../tsl-types'
 import { matrix4, number } from '../uniforms'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
@@ -112,11 +112,7 @@ export class LightShafts implements ShadowedShafts {
   ) {
     checkAtmosphere('LightShafts', atmosphere)
     checkCamera('LightShafts', camera)
-    const lightCamera = (light?.shadow?.camera ?? null) as Partial<OrthographicCamera> | null
-    if (!lightCamera?.isOrthographicCamera)
-      fail('LightShafts', 'light must be a DirectionalLight', light)
-    const { atmosphere: lit = atmosphere } = light as { atmosphere?: Atmosphere }
-    if (lit !== atmosphere) fail('LightShafts', 'light must be of the same atmosphere', light)
+    checkShadowLight('LightShafts', light, atmosphere)
     this.atmosphere = atmosphere
     this.camera = camera
     this.light = light

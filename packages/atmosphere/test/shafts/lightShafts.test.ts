@@ -71,6 +71,10 @@ describe('bad input to light shafts', () => {
       () => lightShafts(atmosphere, camera, light, { enabled: wrong(1) })
     ],
     [
+      'LightShafts: light must be of the same atmosphere, got a SunDirectionalLight',
+      () => lightShafts(new Atmosphere(), camera, light)
+    ],
+    [
       'LightShafts: light must be a DirectionalLight, got a PointLight',
       () => lightShafts(atmosphere, camera, wrong(new PointLight()))
     ],
