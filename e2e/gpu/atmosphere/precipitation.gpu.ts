@@ -281,13 +281,9 @@ gpuTest(
         if (lamp instanceof SpotLight) {
           const axis = lamp.position.clone().sub(lamp.target.position).normalize()
           const [edge, inside] = [Math.cos(lamp.angle), Math.cos(lamp.angle * (1 - lamp.penumbra))]
-          const part = MathUtils.clamp(
-            (way.dot(axis) / distance - edge) / (inside - edge || 1e-9),
-            0,
-            1
-          )
-          if (lamp.penumbra === 0 && Math.abs(way.dot(axis) / distance - edge) < 1e-3) return
-          expected *= part ** 2 * (3 - 2 * part)
+          const cosine = way.dot(axis) / distance
+          if (lamp.penumbra === 0 && Math.abs(cosine - edge) < 1e-3) return
+          expected *= MathUtils.smoothstep(cosine, edge, inside)
         }
         if (expected > 0) lit[k]++
         const told = `lamp ${k} at ${distance.toFixed(2)} m`

@@ -38,12 +38,15 @@ export interface CloudScene {
 export async function evenClouds(
   t: GpuContext,
   layers: CloudLayers,
-  place: Place
+  place: Place,
+  map: DataTexture | null = null
 ): Promise<Pick<CloudScene, 'renderer' | 'field' | 'update' | 'dispose'>> {
   const renderer = await t.createRenderer()
   const atmosphere = new Atmosphere().place(place)
   const camera = new PerspectiveCamera()
-  const field = new CloudField(atmosphere, layers)
+  const field = new CloudField(atmosphere, layers, undefined, {
+    worldMap: map && cloudWorldMap(map)
+  })
   return {
     renderer,
     field,
@@ -67,18 +70,12 @@ export async function cloudScene(
   place: Place,
   map: DataTexture | null = null
 ): Promise<CloudScene> {
-  const renderer = await t.createRenderer()
-  const atmosphere = new Atmosphere().place(place)
-  const camera = new PerspectiveCamera()
-  camera.updateMatrixWorld()
-  const field = new CloudField(atmosphere, layers, undefined, {
-    worldMap: map && cloudWorldMap(map)
-  })
+  const even = await evenClouds(t, layers, place, map)
+  const { renderer, field } = even
+  const { atmosphere } = field
   const viewpoint = new Vector3()
   const update = (seconds = 0): AtmosphereView => {
-    const view = atmosphere.update(renderer, camera)
-    field.view.update({ renderer, camera } as unknown as NodeFrame)
-    field.update(view, seconds)
+    const view = even.update(seconds)
     viewpoint.copy(view.up).multiplyScalar(atmosphere.parameters.bottomRadius + view.height)
     return view
   }
@@ -106,10 +103,7 @@ export async function cloudScene(
       axialRatio: field.axialRatio,
       ...(map === null ? {} : { worldMap: coverOf(map), worldMapWidth: map.image.width })
     }),
-    dispose() {
-      field.dispose()
-      atmosphere.dispose()
-    }
+    dispose: even.dispose
   }
 }
 

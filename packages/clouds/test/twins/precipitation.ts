@@ -1,4 +1,4 @@
-import { Vector3 } from 'three'
+import { MathUtils, Vector3 } from 'three'
 import { extinctionForm, fallForm, STRONGEST } from '../../src/precipitation/fallForm'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
 import { dry } from '../../src/layers/precipitation'
@@ -19,8 +19,7 @@ export function extinctionOf(rate: number, snow: number, hail: number): number {
 
 /** Share of snow at an altitude [m]: none from a depth of `melting` below the freezing level on, by Hermite's cubic. */
 export function snowShareOf(altitude: number, freezingLevel: number): number {
-  const melted = Math.min(Math.max((freezingLevel - altitude) / fallForm.melting, 0), 1)
-  return 1 - melted ** 2 * (3 - 2 * melted)
+  return 1 - MathUtils.smoothstep(freezingLevel - altitude, 0, fallForm.melting)
 }
 
 /** Rates of water that fall from a layer as drops or flakes, and as hail [mm/h], and the share of snow. */
@@ -38,12 +37,10 @@ export interface FallenOf {
 export function fallenOf(layer: CloudLayerParameters, rank: number, altitude: number): FallenOf {
   const { baseAltitude: base, topAltitude: top } = layer
   const { rate, virgaDepth, freezingLevel, hail } = { ...dry, ...layer.precipitation }
-  const [from, to] = fallForm.hailFrom
-  const strength = Math.min(Math.max((rank - from) / (to - from), 0), 1)
   const begun = (base - altitude) / (fallForm.onset * (top - base)) + 1
   const all =
     rateOf(rate, rank, Math.max(base - altitude, 0), virgaDepth) * Math.min(Math.max(begun, 0), 1)
-  const stones = all * hail * strength ** 2 * (3 - 2 * strength)
+  const stones = all * hail * MathUtils.smoothstep(rank, ...fallForm.hailFrom)
   return { rate: all - stones, hail: stones, snow: snowShareOf(altitude, freezingLevel) }
 }
 
