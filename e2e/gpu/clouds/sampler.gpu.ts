@@ -93,5 +93,35 @@ gpuTest('clouds too thin to be seen do not move the points that a ray sees', asy
     return seenClouds(state, float(1)).points.distances
   })
   const share = Math.exp(-0.5) / (1 + Math.exp(-0.5))
-  expectTrue(Math.abs(distance - (200 + 2 * share)) < 1e-3, `they are at ${distance} m`)
+  const aside = 2 * meanInStep(0.5)
+  expectTrue(Math.abs(distance - (200 + 2 * share + aside)) < 1e-3, `they are at ${distance} m`)
+})
+
+/** Mean place where the light of a step of an optical depth comes from, from its middle on [lengths of the step]: by sums. */
+function meanInStep(depth: number): number {
+  const parts = 10_000
+  let [sum, all] = [0, 0]
+  for (let i = 0; i < parts; i++) {
+    const t = (i + 0.5) / parts
+    sum += (t - 0.5) * Math.exp(-depth * t)
+    all += Math.exp(-depth * t)
+  }
+  return sum / all
+}
+
+gpuTest('dense steps are seen where they begin, thin ones in their middle', async t => {
+  const depths = [1e-4, 0.02, 0.3, 2, 40]
+  const length = 10
+  const found = await t.evaluate(
+    depths.map(depth => [depth, 0, 0, 0] as const),
+    input => {
+      const state = seenState()
+      addPair(state, vec2(input.x, 0), [float(1005), float(1015)])
+      return seenClouds(state, float(1)).points.distances
+    }
+  )
+  depths.forEach((depth, i) => {
+    const expected = 1005 + length * meanInStep(depth)
+    expectTrue(Math.abs(found[4 * i] - expected) < 0.02, `depth ${depth}: ${found[4 * i]} m`)
+  })
 })

@@ -96,5 +96,5 @@ export const stormBillows = {
   /** Strength that is taken off: billows cover more than they clear [–]. Smaller: storms cover more than asked for. */
   offset: 0,
   /** Most that billows and turbulence add to strength in clear air [–]. Smaller: faster, and heads are cut off. */
-  most: 17
+  most: 13
 } as const

@@ -46,7 +46,7 @@ export type CloudQualityName = 'low' | 'medium' | 'high' | 'ultra'
 /** Well-tried qualities. */
 export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = {
   low: {
-    steps: 96,
+    steps: 160,
     stepGrowth: 0.008,
     shortestStep: 20,
     depthStep: 1,
@@ -55,7 +55,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     block: 4
   },
   medium: {
-    steps: 288,
+    steps: 512,
     stepGrowth: 0.005,
     shortestStep: 4,
     depthStep: 0.3,
@@ -64,7 +64,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     block: 4
   },
   high: {
-    steps: 320,
+    steps: 640,
     stepGrowth: 0.003,
     shortestStep: 4,
     depthStep: 0.3,
@@ -73,7 +73,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     block: 3
   },
   ultra: {
-    steps: 512,
+    steps: 960,
     stepGrowth: 0.002,
     shortestStep: 3,
     depthStep: 0.2,

@@ -20,7 +20,7 @@ export const NOWHERE = 1e6
  * Distance over which the strength of clear air changes by 1 in the mean towards a cloud [periods of the
  * shape]. Greater: faster, and small clouds are missed here and there, as grain (*Cumulus*).
  */
-const LIKELY = 0.012
+const LIKELY = 0.006
 
 /**
  * `LIKELY` in layers of storms. Their strength is a distance, but heads on heads are steeper by far. Greater: heads are
@@ -50,11 +50,11 @@ export const nearStorms = (layer: LayerNodes): Float =>
   float(stormBillows.most * LIKELY_OF_STORMS).div(layer.perShapePeriod)
 
 /**
- * Strength that billows add to clear air, in nearly all places, and what anvils add: they spread from column to
- * column, and so no background rules them out [–]. Smaller: faster, and small clouds are missed in clear
- * regions, as grain (*Cumulus*).
+ * Most strength that billows add to clear air, and what anvils add: they spread from column to column, and so no background
+ * rules them out [–]. Smaller: faster, and heads of far clouds are missed by whole rows of pixels: cumulus look as if made of
+ * plates (*Presets*).
  */
-const MOST_BILLOWS = 0.6
+const MOST_BILLOWS = 3
 const ANVIL = 99
 
 /**

@@ -85,13 +85,28 @@ export function endStratum(state: SeenState): void {
   enterStratum(state, next.toConst())
 }
 
+/** Optical depth below which a step's light comes from its middle [–]: what is taken off is less than a thousandth of its length. */
+const THIN = 0.01
+
 /**
- * Adds two steps: energy-conserving integration, L += T S (1 − e^{−τ}) for steps of any length. The source S
+ * Mean places where steps' light comes from, from their middle on [lengths of a step]: ∫ t e^{−τt} dt / ∫ e^{−τt} dt − ½ over t in
+ * [0, 1]. Dense steps are seen at their beginning.
+ *
+ * @param depth - Their optical depths τ.
+ */
+function seenFromMiddle(depth: Vec2): Vec2 {
+  const least = depth.max(THIN).toConst() as Vec2
+  const through = least.negate().exp().toConst() as Vec2
+  return least.reciprocal().sub(through.div(through.oneMinus())).sub(0.5).toConst() as Vec2
+}
+
+/**
+ * Adds two steps of the same length: energy-conserving integration, L += T S (1 − e^{−τ}) for steps of any length. The source S
  * is left open: one place of each stratum of opacity stands for it, the middle of the cloud that takes most
  * of it.
  *
  * @param depth - Scaled optical depths of both steps.
- * @param places - Distances of their samples [m].
+ * @param places - Distances of their middles, where samples were taken [m].
  * @see Hillaire 2016, "Physically based sky, atmosphere and cloud rendering in Frostbite" §5.6.3
  */
 export function addPair(state: SeenState, depth: Vec2, places: readonly Float[]): void {
@@ -102,7 +117,12 @@ export function addPair(state: SeenState, depth: Vec2, places: readonly Float[])
     transmittance.mul(through.x).mul(through.y.oneMinus())
   ).toConst() as Vec2
   const both = seen.x.add(seen.y).toConst()
-  const weighted = places[0].mul(seen.x).add(places[1].mul(seen.y)).toConst()
+  const aside = seenFromMiddle(depth).mul(places[1].sub(places[0])).toConst()
+  const weighted = places[0]
+    .add(aside.x)
+    .mul(seen.x)
+    .add(places[1].add(aside.y).mul(seen.y))
+    .toConst()
   const stratum = transmittance
     .oneMinus()
     .max(0)

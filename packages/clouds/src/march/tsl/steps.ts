@@ -29,10 +29,10 @@ const CLEAR_GROWTH = 4
 const NEAR_GROWTH = 1.5
 
 /**
- * Steps through clear air longer than this many in clouds go back where they find one. Greater: near edges
- * are ragged (*Inside a cloud*).
+ * Steps through clear air longer than this many in clouds go back where they find one; less than `NEAR_GROWTH`. Greater:
+ * near edges are ragged (*Inside a cloud*), and towers have contours, since rays side by side meet them in step (*Storm*).
  */
-const LOOK_BACK = 1.6
+const LOOK_BACK = 1.2
 
 /**
  * Steps in clouds of which nothing more is seen, over those at their edges, less 1. Greater: faster, and the
@@ -45,6 +45,9 @@ const HIDDEN_GROWTH = 2
  * miss the same heads. 0: contours in towers (*Storm*); greater: slower, and pictures of small clouds do not come to rest.
  */
 const SPREAD = 0.1
+
+/** Least part of a pair's length where steps in clouds begin. From there up to 1 both its samples pass over one step. */
+const LEAST_PART = 0.5
 
 /** State of the step policy. */
 export interface StepState {
@@ -184,9 +187,11 @@ export function advance(
     // Back to the last sample that was clear.
     forward.assign(extinction.x.greaterThan(0).select(before.mul(-0.5), length.mul(0.5)))
     isFine.assign(true)
-    part.assign(jitter.max(0.5))
+    part.assign(jitter.max(LEAST_PART))
   }).Else(() => {
-    isFine.assign(isCloudy.or(likelyDistance.lessThan(fine)))
+    const isNext = isCloudy.or(likelyDistance.lessThan(fine)).toConst()
+    part.assign(isNext.and(isFine.not()).select(jitter.max(LEAST_PART), 1))
+    isFine.assign(isNext)
     finest.assign(stepIn(quality, greatest, longest))
     likely.assign(likelyDistance)
     isNear.assign(near)

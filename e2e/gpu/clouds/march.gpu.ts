@@ -1,0 +1,77 @@
+import { CloudLightTable, cloudPreset, cloudQualities, type CloudQuality } from '@welkin/clouds'
+import { float, vec4 } from 'three/tsl'
+import { QualityUniforms } from '../../../packages/clouds/src/march/quality'
+import { marchClouds } from '../../../packages/clouds/src/march/tsl/march'
+import { random } from '../harness/atmosphere'
+import { cloudScene, mean } from '../harness/cloud-scene'
+import { evaluateOnGpu } from '../harness/evaluate'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+
+const { high, medium } = cloudQualities
+
+/** Steps of an eighth of the length of `high`. */
+const fine: CloudQuality = {
+  ...high,
+  steps: 1024,
+  stepGrowth: high.stepGrowth / 8,
+  shortestStep: high.shortestStep / 8,
+  depthStep: high.depthStep / 8,
+  layerSteps: high.layerSteps * 8
+}
+
+/** Share of the likely distances that the fine march goes by: see `CloudField.skipping`. */
+const FINE_SKIPPING = 0.25
+
+gpuTest(
+  'rays find the heads of towers far away',
+  async t => {
+    const layers = cloudPreset('congestus')
+    const scene = await cloudScene(t, layers, { longitude: 139.7, latitude: 35.7, height: 2 })
+    const { field } = scene
+    field.pixelAngle.value = 9e-4
+    const light = new CloudLightTable()
+    light.bake()
+    field.depthScale.value = light.nodes.depthScale.value
+    scene.update()
+    const next = random(5)
+    /** Azimuth and elevation [rad], and the jitter. */
+    const rays = Array.from({ length: 600 }, () => [
+      2 * Math.PI * next(),
+      (2 + 13 * next()) * (Math.PI / 180),
+      next(),
+      0
+    ])
+    const quality = new QualityUniforms()
+    const { up } = field.view
+    const opacities = async (of: CloudQuality, skipping: number): Promise<number[]> => {
+      quality.set(of)
+      field.skipping.value = skipping
+      const found = await evaluateOnGpu(scene.renderer, rays, ({ x, y, z }) => {
+        const ahead = up.yzx.cross(up).normalize().toConst()
+        const aside = up.cross(ahead).toConst()
+        const level = ahead.mul(x.cos()).add(aside.mul(x.sin()))
+        const direction = level.mul(y.cos()).add(up.mul(y.sin())).normalize().toConst()
+        const ray = { direction, end: float(1e5), jitter: z }
+        const { transmittance } = marchClouds({ field, light: light.nodes, quality }, ray)
+        return vec4(transmittance.oneMinus())
+      })
+      return rays.map((_, i) => found[4 * i])
+    }
+    const expected = await opacities(fine, FINE_SKIPPING)
+    for (const [name, of, limit] of [
+      ['high', high, 0.025],
+      ['medium', medium, 0.04]
+    ] as const) {
+      const got = await opacities(of, 1)
+      const missed = mean(got.map((opacity, i) => Math.max(expected[i] - opacity, 0)))
+      const more = mean(got.map((opacity, i) => Math.max(opacity - expected[i], 0)))
+      t.note(`${name}: cover ${mean(expected).toFixed(3)}, missed ${missed}, more ${more}`)
+      expectTrue(missed < limit, `${name}: rays miss ${missed} of the sky`)
+      expectTrue(more < limit, `${name}: rays meet clouds in ${more} of the sky that is clear`)
+    }
+    light.dispose()
+    scene.dispose()
+  },
+  { backends: ['webgpu'] }
+)
