@@ -12,7 +12,7 @@ export function flowTerms(diameter: number, chi1: number, chi2: number): [number
   ]
 }
 
-/** The same in a Monte-Carlo solution: means over the light of what its moments have over a slab's, whose thickness is that of the ring. */
+/** Terms of the flow in a Monte-Carlo solution: means over the light of what its moments have over a slab's, as thick as the ring. */
 export function flowOver(
   light: SphereLight,
   solver: SlabSolver,

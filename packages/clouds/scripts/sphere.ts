@@ -20,7 +20,7 @@ export interface SphereLight {
   /** Mean over directions of radiance times the cosine to the way of the beam, and times that cosine's second Legendre polynomial [1/sr]. */
   along: number[]
   square: number[]
-  /** The same of the cosine to the direction away from the axis [1/sr]. */
+  /** Mean over directions of radiance times the cosine to the direction away from the axis [1/sr]. */
   aside: number[]
 }
 

@@ -28,7 +28,7 @@ export interface Resolution {
 export const weatherLevel = (footprint: Float, perPeriod: Float | number): Float =>
   levelOf(footprint.mul(perPeriod), 1 / NOISE_SIZE.weather)
     .mul(strengthForm.levelsPerOctave)
-    .toConst() as Float
+    .toConst()
 
 /**
  * Levels of detail over which single clouds pass into their mean: the first and the last. Smaller: clouds blur
