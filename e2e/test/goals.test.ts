@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest'
-import { missedGoals } from '../validate/goals'
+import { missedCloudGoals, missedGoals } from '../validate/goals'
 import { bandStatistics, type Comparison } from '../validate/score'
 
 const errors = (sunZenith: number, error: number): Comparison[] =>
@@ -34,5 +34,18 @@ describe('missedGoals', () => {
     expect(missedGoals({}, {}, figures)).toEqual([])
     expect(missedGoals({}, {}, { ...figures, mean: 0.31 })).toHaveLength(1)
     expect(missedGoals({}, {}, { ...figures, p95: NaN })).toHaveLength(1)
+  })
+})
+
+describe('missedCloudGoals', () => {
+  it('holds slabs and spheres to what they were at when clouds got their form', () => {
+    const slab = { n: 10, median: 0.006, p90: 0.054, p95: 0.084 }
+    const sphere = { n: 10, median: 0.044, p90: 0.195, p95: 0.265 }
+    const cases: never[] = []
+    expect(missedCloudGoals({ slab, sphere, cases })).toEqual([])
+    expect(missedCloudGoals({ slab, sphere: { ...sphere, p90: 0.287 }, cases })).toEqual([
+      'p90 of cloud spheres is 0.287, goal 0.25'
+    ])
+    expect(missedCloudGoals({ slab: { ...slab, median: 0.02 }, sphere, cases })).toHaveLength(1)
   })
 })

@@ -33,8 +33,8 @@ export interface CloudGoal {
 
 /** Errors of the radiance that leaves homogeneous clouds, per shape. */
 export const cloudGoals: Record<'slab' | 'sphere', CloudGoal> = {
-  slab: { median: 0.03, p95: 0.15 },
-  sphere: { median: 0.2, p90: 0.6 }
+  slab: { median: 0.01, p95: 0.1 },
+  sphere: { median: 0.06, p90: 0.25 }
 }
 
 /** Errors of the radiance that leaves a simulated cloud, and the largest median of a picture. */

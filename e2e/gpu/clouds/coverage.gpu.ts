@@ -146,6 +146,38 @@ gpuTest(
 )
 
 gpuTest(
+  'has no grain from orbit: what pixels next to each other see is much alike',
+  async t => {
+    const [size, distance] = [128, 1e6]
+    for (const [name, limit] of [
+      ['fairWeather', 0.06],
+      ['altocumulus', 0.05],
+      ['cirrus', 0.08]
+    ] as const) {
+      const scene = await cloudScene(t, cloudPreset(name), { longitude: 20, latitude: 45 })
+      const { field } = scene
+      const columns = new CloudColumns(field, size, size * distance * field.pixelAngle.value, 8)
+      columns.distance = distance
+      const { light } = await columns.draw(scene.renderer)
+      const middle = mean(light)
+      const variance = mean(light.map(value => (value - middle) ** 2))
+      const inRows = light.filter((_, i) => i % size > 0)
+      const steps = inRows.map((value, i) => {
+        const row = Math.floor(i / (size - 1))
+        return (value - light[i + row]) ** 2
+      })
+      // 1 for white noise, 0 for an even sky.
+      const grain = mean(steps) / (2 * variance)
+      t.note(`${name}: ${grain.toFixed(3)}, deviation ${Math.sqrt(variance).toFixed(3)}`)
+      expectTrue(grain < limit, `${name}: grain of ${grain}`)
+      columns.dispose()
+      scene.dispose()
+    }
+  },
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
   'descends to the clouds of a world map without a pop, whatever they are',
   async t => {
     const map = worldMap()

@@ -1,8 +1,10 @@
-// Derives the coefficients of src/light/cpu/lateralLeak.ts from Monte-Carlo solutions of spheres of cloud.
+// Derives the coefficients of src/light/cpu/lateralLeak.ts from Monte-Carlo solutions of spheres of cloud, and prints what those of
+// src/light/cpu/flow.ts stand for.
 // Run it with: npm run fit-leak
 import { factorize } from '../src/light/cpu/matrices'
 import { SlabSolver } from '../src/light/cpu/solveSlab'
-import { sphereSource, RINGS, STEPS } from './sphere'
+import { flowOver, flowTerms } from './flow'
+import { sphereLight, RINGS, STEPS } from './sphere'
 
 /** χ′₁ and χ′₂ of phase functions from isotropic to Henyey–Greenstein's of 0.85. */
 const phases: [number, number][] = [
@@ -54,7 +56,11 @@ for (const [chi1, chi2] of phases) {
     // Truncated to three terms this phase function is negative somewhere; weights of alternating sign
     // grow with each collision.
     if (chi1 > 0.5 && diameter > 20) continue
-    const sources = sphereSource(diameter, chi1, chi2, photons)
+    const light = sphereLight(diameter, chi1, chi2, photons)
+    const found = flowOver(light, solver, diameter, chi1, chi2)
+    const terms = flowTerms(diameter, chi1, chi2)
+    const list = (each: readonly number[]): string => each.map(value => value.toFixed(3)).join(' ')
+    console.log(`flow, χ′₁ ${chi1}, D ${diameter}: ${list(found)}; fit ${list(terms)}`)
     for (let ring = 0; ring < RINGS; ring++) {
       const chord = Math.sqrt(1 - (ring + 0.5) / RINGS)
       const thickness = diameter * chord
@@ -64,7 +70,7 @@ for (const [chi1, chi2] of phases) {
         parts.map(part => part * thickness)
       )
       slab.fromBeam(1).forEach(({ s00 }, i) => {
-        const source = sources[ring * STEPS + i]
+        const source = light.source[ring * STEPS + i]
         if (!(source > 0)) return
         const variables = [parts[i], Math.log(1 + (1 - chi1) * diameter), chord]
         equations.push({

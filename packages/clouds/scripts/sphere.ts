@@ -13,29 +13,41 @@ function randomNumbers(): () => number {
   }
 }
 
+/** Light that was scattered before, in the cells of a sphere: by ring from the axis outwards, then by part of the way from the side of the light. */
+export interface SphereLight {
+  /** Mean radiance [1/sr]. */
+  source: number[]
+  /** Mean over directions of radiance times the cosine to the way of the beam, and times that cosine's second Legendre polynomial [1/sr]. */
+  along: number[]
+  square: number[]
+  /** Mean over directions of radiance times the cosine to the direction away from the axis [1/sr]. */
+  aside: number[]
+}
+
 /**
- * Source of light that was scattered before, the mean radiance in the cells of a homogeneous sphere that
- * does not absorb, in a beam of unit irradiance [1/sr].
+ * Light that was scattered before in the cells of a homogeneous sphere that
+ * does not absorb, in a beam of unit irradiance.
  *
  * Photons are traced and their collisions after the first one counted, by cell.
  *
  * @param diameter - Scaled optical diameter.
  * @param chi1 - χ′₁, and χ′₂ below: the phase function has no further terms.
- * @returns Values by ring from the axis outwards, then by part of the way from the side of the light.
  */
-export function sphereSource(
+export function sphereLight(
   diameter: number,
   chi1: number,
   chi2: number,
   photons: number
-): number[] {
+): SphereLight {
   const random = randomNumbers()
   const radius = diameter / 2
   const phase = (mu: number): number => 1 + 3 * chi1 * mu + 2.5 * chi2 * (3 * mu * mu - 1)
   const samples = Array.from({ length: 2000 }, (_, i) => Math.abs(phase(-1 + (i + 0.5) / 1000)))
   const highest = 1.001 * Math.max(...samples)
   const magnitude = samples.reduce((sum, value) => sum + value, 0) / samples.length
-  const counts = Array.from({ length: RINGS * STEPS }, () => 0)
+  const [source, along, square, aside] = Array.from({ length: 4 }, () =>
+    Array.from({ length: RINGS * STEPS }, () => 0)
+  )
   for (let photon = 0; photon < photons; photon++) {
     let x = radius * Math.sqrt(random())
     let y = 0
@@ -53,7 +65,11 @@ export function sphereSource(
         const half = Math.sqrt(radius * radius - fromAxis)
         const ring = Math.min(Math.floor((fromAxis / radius ** 2) * RINGS), RINGS - 1)
         const part = Math.min(Math.floor(((half - z) / (2 * half)) * STEPS), STEPS - 1)
-        counts[ring * STEPS + part] += weight
+        const cell = ring * STEPS + part
+        source[cell] += weight
+        along[cell] -= weight * dz
+        square[cell] += weight * (1.5 * dz * dz - 0.5)
+        aside[cell] += (weight * (dx * x + dy * y)) / Math.sqrt(Math.max(fromAxis, 1e-12))
       }
       let cosine: number
       do cosine = 2 * random() - 1
@@ -74,11 +90,13 @@ export function sphereSource(
       ]
     }
   }
-  return counts.map((count, i) => {
+  const perVolume = (count: number, i: number): number => {
     const inner = 1 - Math.floor(i / STEPS) / RINGS
     const outer = inner - 1 / RINGS
     const sphere = (4 / 3) * Math.PI * radius ** 3
     const volume = (sphere * (inner ** 1.5 - Math.max(outer, 0) ** 1.5)) / STEPS
     return (count * Math.PI * radius ** 2) / (photons * volume * 4 * Math.PI)
-  })
+  }
+  const [a, b, c, d] = [source, along, square, aside].map(counts => counts.map(perVolume))
+  return { source: a, along: b, square: c, aside: d }
 }

@@ -22,8 +22,8 @@ export const strengthForm = {
    * Offset where levels of detail have lost the billows, for shape amount 1 [–], and the unresolved
    * fraction at which it is 0. Greater: more cloud far away than near by (*Cockpit*).
    */
-  smoothOffset: 0.77,
-  smoothUntil: 0.78,
+  smoothOffset: 0.82,
+  smoothUntil: 1,
   /**
    * Levels of detail over which billows are lost in the mean [octaves]: the offset goes with them. Wrong:
    * clouds grow or shrink with the distance (*Cockpit*).
@@ -34,6 +34,11 @@ export const strengthForm = {
    * blurred weather has left: wrong, and cover changes with the distance (*World clouds*).
    */
   fadeLevels: 6,
+  /**
+   * Levels of detail of the weather's noise for each octave by which a footprint is wider than its texels. 1: grain of a pixel or two
+   * from orbit; greater: the weather blurs with the distance (*World clouds*, without its map).
+   */
+  levelsPerOctave: 1.25,
   /** Least variance of blurred weather that is made up for [–]. Smaller: grain far away (*World clouds*). */
   leastVariance: 0.05,
   /**

@@ -23,10 +23,11 @@ export function regionalCoverages(
   layer: CloudLayerParameters,
   footprint: number
 ): readonly number[] {
-  const { edgeSoftness, leastEdgeSoftness, fadeLevels, contrast } = strengthForm
+  const { edgeSoftness, leastEdgeSoftness, fadeLevels, levelsPerOctave, contrast } = strengthForm
   const { cloudVariance } = weatherScales(layer.weatherWeights, false, layer.openCells)
   const texel = layerPeriods(layer).weather / NOISE_SIZE.weather
-  const level = Math.log2(Math.max(footprint / texel, 1)) - layerForms(layer).coarseness
+  const octaves = Math.log2(Math.max(footprint / texel, 1)) - layerForms(layer).coarseness
+  const level = levelsPerOctave * octaves
   const lostVariance = cloudVariance * MathUtils.smoothstep(level, 0, fadeLevels)
   const edges = Math.max(layer.shapeAmount * edgeSoftness, leastEdgeSoftness)
   const width = Math.sqrt(lostVariance + edges * edges)

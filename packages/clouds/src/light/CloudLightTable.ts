@@ -27,6 +27,8 @@ export interface CloudLight {
   readonly scatteringScale: UniformNode<'float', number>
   /** 1 − g′, with g′ = χ′₁ the asymmetry of the delta-scaled phase function. */
   readonly oneMinusAsymmetry: UniformNode<'float', number>
+  /** χ′₂, second Legendre coefficient of the delta-scaled phase function. */
+  readonly secondMoment: UniformNode<'float', number>
   readonly forwardAsymmetry: UniformNode<'float', number>
   readonly backwardAsymmetry: UniformNode<'float', number>
   readonly forwardShare: UniformNode<'float', number>
@@ -92,6 +94,7 @@ export class CloudLightTable {
       depthScale: number(),
       scatteringScale: number(),
       oneMinusAsymmetry: number(),
+      secondMoment: number(),
       forwardAsymmetry: number(),
       backwardAsymmetry: number(),
       forwardShare: number()
@@ -137,6 +140,7 @@ export class CloudLightTable {
     this.nodes.depthScale.value = depthScale
     this.nodes.scatteringScale.value = phase.scatteringAlbedo / depthScale
     this.nodes.oneMinusAsymmetry.value = 1 - moments[1]
+    this.nodes.secondMoment.value = moments[2]
     for (const name of ['forwardAsymmetry', 'backwardAsymmetry', 'forwardShare'] as const) {
       this.nodes[name].value = phase[name]
     }

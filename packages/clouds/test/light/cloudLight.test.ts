@@ -1,11 +1,12 @@
 import fc from 'fast-check'
 import { gaussLegendre } from '@welkin/atmosphere'
 import { beforeAll, describe, expect, it } from 'vitest'
-import { sphereSource, RINGS, STEPS } from '../../scripts/sphere'
+import { flowOver, flowTerms } from '../../scripts/flow'
+import { sphereLight, RINGS, STEPS } from '../../scripts/sphere'
 import { CloudLightTable } from '../../src/light/CloudLightTable'
 import { scalePhase } from '../../src/light/cpu/cloudPhase'
 import { SlabSolver } from '../../src/light/cpu/solveSlab'
-import { cloudAmbient, cloudSource, lateralLeak } from '../twins/cloudLight'
+import { cloudAmbient, cloudSource, flow, lateralLeak } from '../twins/cloudLight'
 import { sampleBeamSource, slabColumn, slabRow, solveCloudLight } from '../twins/cloudLightTable'
 import { aureolePhase, cloudPhase } from '../twins/cloudPhase'
 
@@ -114,7 +115,7 @@ describe('lateral leak', () => {
       [14, 0.25]
     ]) {
       const solver = new SlabSolver({ depthScale: 1, albedo: 0.99999, moments: [1, chi1, 0.15] })
-      const sources = sphereSource(diameter, chi1, 0.15, diameter < 1 ? 400_000 : 60_000)
+      const { source: sources } = sphereLight(diameter, chi1, 0.15, diameter < 1 ? 400_000 : 60_000)
       let error = 0
       let total = 0
       for (let ring = 0; ring < RINGS; ring++) {
@@ -143,6 +144,55 @@ describe('lateral leak', () => {
     expect(leak([2, 0.1], [1.5, 4])).toBeLessThan(0.8 * whole)
     expect(leak([2, 3], [1.5, 0.1])).toBeLessThan(0.9 * whole)
     expect(leak([2, 3], [9, 4])).toBeGreaterThan(1.05 * whole)
+  })
+})
+
+describe('flow', () => {
+  it('is that of Monte-Carlo solutions of spheres, for phase functions between those fitted', () => {
+    for (const [diameter, chi1, chi2] of [
+      [0.9, 0.25, 0.15],
+      [4, 0.4, 0.2],
+      [14, 0.55, 0.25]
+    ]) {
+      const solver = new SlabSolver({ depthScale: 1, albedo: 0.99999, moments: [1, chi1, chi2] })
+      const light = sphereLight(diameter, chi1, chi2, 150_000)
+      const found = flowOver(light, solver, diameter, chi1, chi2)
+      flowTerms(diameter, chi1, chi2).forEach((term, i) => {
+        expect(Math.abs(found[i] - term)).toBeLessThan(0.2 * term + 0.01)
+      })
+    }
+  })
+
+  it('goes outwards: towards a camera that is nearer than the sphere’s middle, away from one beyond it', () => {
+    const { moments } = scalePhase(phase)
+    // Level with the middle, on a line at right angles to the light.
+    const at = (front: number): number =>
+      flow(
+        {
+          ...isolated,
+          cosViewLight: 0,
+          depthToLight: Math.sqrt(25 - (5 - front) ** 2),
+          depthThrough: 2 * Math.sqrt(25 - (5 - front) ** 2),
+          depthAcross: 10,
+          viewChord: [front, 10 - front]
+        },
+        moments,
+        0
+      )
+    expect(at(5) - at(9)).toBeCloseTo(at(1) - at(5), 9)
+    expect(at(1)).toBeGreaterThan(at(5) + 0.1)
+    expect(at(5)).toBeCloseTo(
+      flow({ ...isolated, depthToLight: 5, depthThrough: 10, depthAcross: 10 }, moments, 0),
+      9
+    )
+  })
+
+  it('takes a chord for no longer than a sphere’s: beyond it another bulge begins', () => {
+    const { moments } = scalePhase(phase)
+    const place = { ...isolated, cosViewLight: 0, depthToLight: 2, depthThrough: 5, depthAcross: 7 }
+    const along = (behind: number): number => flow({ ...place, viewChord: [1, behind] }, moments, 0)
+    expect(along(40)).toBe(along(6))
+    expect(along(3)).toBeLessThan(along(6))
   })
 })
 

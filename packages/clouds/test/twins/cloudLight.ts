@@ -1,5 +1,6 @@
 import { scalePhase, type CloudPhaseParameters } from '../../src/light/cpu/cloudPhase'
 import { facingFit } from '../../src/light/cpu/facing'
+import { flowFit } from '../../src/light/cpu/flow'
 import { lateralLeakFit as fit } from '../../src/light/cpu/lateralLeak'
 import { skyShareFit } from '../../src/light/cpu/skyShare'
 import { ISOLATED_DEPTH } from '../../src/light/tsl/cloudLight'
@@ -71,6 +72,37 @@ export function lateralLeak(sample: CloudSourceSample, oneMinusAsymmetry: number
   return Math.exp(exponent - openness * resolved)
 }
 
+/**
+ * Flow of light in an isolated cloud over a slab's, over the source's mean, in float64. Twin of the shader function.
+ *
+ * @param moments - Legendre coefficients of the delta-scaled phase function.
+ * @param cosView - The view ray against the slab's normal.
+ */
+export function flow(
+  sample: CloudSourceSample,
+  [, chi1, chi2]: readonly number[],
+  cosView: number
+): number {
+  const { depthToLight, depthThrough, depthAcross, viewChord, cosViewLight, resolved = 1 } = sample
+  const diameter = (1 - chi1) * depthAcross
+  const along = (flowFit.along * chi1 ** 2) / (1 + diameter / flowFit.alongDepth)
+  const square = (flowFit.square * chi2) / (1 + diameter / flowFit.squareDepth)
+  const both = along * cosView + (square * (3 * cosView ** 2 - 1)) / 2
+  if (viewChord === undefined) return both
+  // From the middle of both chords, towards the camera and towards the light.
+  const [front, seen] = viewChord
+  const behind = Math.min(
+    seen,
+    (depthToLight * (depthThrough - depthToLight)) / Math.max(front, 1e-4)
+  )
+  const [towardsCamera, towardsLight] = [(behind - front) / 2, depthThrough / 2 - depthToLight]
+  const radius = Math.max(depthAcross, 1e-4) / 2
+  const aside = clamp((towardsCamera + cosViewLight * towardsLight) / radius, -1, 1)
+  return (
+    both + ((3 * chi1 * flowFit.aside) / (1 + diameter / flowFit.asideDepth)) * aside * resolved
+  )
+}
+
 /** Factor of light by its cosine on the faces of thick isolated clouds, in float64. Twin of the shader function. */
 function facing(sample: CloudSourceSample): number {
   const { depthToLight, depthThrough, layered, viewChord, cosViewLight } = sample
@@ -115,7 +147,8 @@ export function cloudSource(
     m.s10 * cosView +
     (m.s20 * (3 * cosView ** 2 - 1)) / 2 +
     (m.s11 + m.s21 * cosView) * along +
-    m.s22 * (2 * along ** 2 - sines)
+    m.s22 * (2 * along ** 2 - sines) +
+    m.s00 * (1 - layered) * flow(sample, moments, cosView)
   const leak = lateralLeak(sample, 1 - moments[1]) ** (1 - layered)
   const exact = cloudPhase(phase, cosViewLight)
   const towards = clamp(10 * cosViewLight - 9, 0, 1)

@@ -78,6 +78,10 @@ const smoothstep = (low: number, high: number, x: number): number => {
 const levelOf = (footprint: number, texel: number): number =>
   footprint > texel ? Math.log2(footprint / texel) : 0
 
+/** Level of detail of the weather's noise for a footprint: `weatherLevel`. */
+const weatherLevelOf = (footprint: number, texel: number): number =>
+  strengthForm.levelsPerOctave * levelOf(footprint, texel)
+
 /** Place in the periods of a noise look-up, of a point in the frame of a layer. */
 function placeIn(inLayer: Vector3, lattice: Quaternion, period: number): Vec3Array {
   const { x, y, z } = inLayer.clone().applyQuaternion(lattice)
@@ -149,7 +153,7 @@ export function weatherAt(
   const subpoint = zenith.clone().multiplyScalar(state.bottomRadius)
   const footprint = distance * state.pixelAngle
   const scales = weatherScales(layer.weatherWeights, state.worldMap !== undefined, layer.openCells)
-  const { coarseness } = layerForms(layer)
+  const coarseness = strengthForm.levelsPerOctave * layerForms(layer).coarseness
   const period = layerPeriods(layer).weather
   const sample = (place: Vec3Array, level: number): number[] =>
     noise.sample('weather', place, level).map(value => value - 0.5)
@@ -166,7 +170,7 @@ export function weatherAt(
     .applyQuaternion(state.rotations[0].clone().invert())
     .multiplyScalar(state.bottomRadius)
   const source = subpoint.clone().add(displacement)
-  const regionLevel = levelOf(footprint, noisePeriods.regions / NOISE_SIZE.weather)
+  const regionLevel = weatherLevelOf(footprint, noisePeriods.regions / NOISE_SIZE.weather)
   const region = sample(
     shifted(
       placeIn(
@@ -180,7 +184,7 @@ export function weatherAt(
     regionLevel
   )
   const inLayer = subpoint.clone().applyQuaternion(ownRotation)
-  const mesoscaleLevel = levelOf(footprint, noisePeriods.mesoscale / NOISE_SIZE.weather)
+  const mesoscaleLevel = weatherLevelOf(footprint, noisePeriods.mesoscale / NOISE_SIZE.weather)
   const mesoscale = sample(
     shifted(
       placeIn(
@@ -195,7 +199,7 @@ export function weatherAt(
   )
   const mesoscaleFactor = MESOSCALE_PER_REGIONS * scales.regions
   const fieldPeriod = period * noisePeriods.fields
-  const fieldLevel = levelOf(footprint, fieldPeriod / NOISE_SIZE.weather)
+  const fieldLevel = weatherLevelOf(footprint, fieldPeriod / NOISE_SIZE.weather)
   const fields = sample(
     shifted(placeIn(inLayer, latticeRotations.fields, fieldPeriod), region, weatherShifts.regions),
     fieldLevel
@@ -215,7 +219,7 @@ export function weatherAt(
   const rise = height * (layer.topAltitude - layer.baseAltitude)
   const subpointInLayer = subpoint.addScaledVector(lean, -rise).applyQuaternion(ownRotation)
   const bend = new Vector3(bendX, bendY, (bendX - bendY) / Math.SQRT2).add(shift).toArray()
-  const level = levelOf(footprint, period / NOISE_SIZE.weather)
+  const level = weatherLevelOf(footprint, period / NOISE_SIZE.weather)
   const clouds = sample(
     shifted(placeIn(subpointInLayer, latticeRotations.weather, period), bend, 1 / period),
     level

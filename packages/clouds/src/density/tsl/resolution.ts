@@ -27,6 +27,8 @@ export interface Resolution {
 /** Level of detail of the weather's noise for a footprint, looked up with a period [m]. */
 export const weatherLevel = (footprint: Float, perPeriod: Float | number): Float =>
   levelOf(footprint.mul(perPeriod), 1 / NOISE_SIZE.weather)
+    .mul(strengthForm.levelsPerOctave)
+    .toConst()
 
 /**
  * Levels of detail over which single clouds pass into their mean: the first and the last. Smaller: clouds blur
@@ -48,7 +50,7 @@ function lostVariance(layer: LayerNodes, footprint: Float, level: Float, cloudLe
     .add(mesoscaleVariance)
     .add(regionVariance)
     .oneMinus()
-  const fieldLevel = level.sub(Math.log2(noisePeriods.fields)).max(0)
+  const fieldLevel = level.sub(strengthForm.levelsPerOctave * Math.log2(noisePeriods.fields)).max(0)
   const mesoscaleLevel = weatherLevel(footprint, 1 / noisePeriods.mesoscale)
   const regionLevel = weatherLevel(footprint, 1 / noisePeriods.regions)
   return layer.cloudVariance
@@ -62,7 +64,9 @@ function lostVariance(layer: LayerNodes, footprint: Float, level: Float, cloudLe
 export function resolutionAt(layer: LayerNodes, footprint: Float): Resolution {
   const level = weatherLevel(footprint, layer.perWeatherPeriod)
   const shapeLevel = levelOf(footprint.mul(layer.perShapePeriod), 1 / NOISE_SIZE.shape)
-  const cloudLevel = level.sub(layer.coarseness).toConst() as Float
+  const cloudLevel = level
+    .sub(layer.coarseness.mul(strengthForm.levelsPerOctave))
+    .toConst() as Float
   const variance = float(0).toVar()
   const gain = float(1).toVar()
   If(level.greaterThan(0), () => {

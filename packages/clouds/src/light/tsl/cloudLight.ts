@@ -5,6 +5,7 @@ import { slabTableForm } from '../cpu/slabTableForm'
 import type { Float, Vec2 } from '../../tsl-types'
 import { singlePhase } from './cloudPhase'
 import { facing, type FacingNodes } from './facing'
+import { flow } from './flow'
 import { lateralLeak } from './lateralLeak'
 import { legendreSeries, readLayer, slabCoordinates } from './slabTable'
 
@@ -61,6 +62,7 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
     const diffuse = legendreSeries(first, cosView)
       .add(first.w.add(second.x.mul(cosView)).mul(along))
       .add(second.y.mul(along.mul(along).mul(2).sub(sines)))
+      .add(flow(light, sample, cosView, cosViewLight).mul(first.x).mul(isolated))
     const path = depthToCamera === undefined ? depthToLight : depthToLight.add(depthToCamera)
     const single = singlePhase(light, cosViewLight, path)
       .mul(light.scatteringScale)
