@@ -4,7 +4,6 @@ import type { Atmosphere } from '../Atmosphere'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { AirShadows } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import type { LightSource } from '../view/LightSource'
 import type { ViewUniforms } from '../view/ViewUniforms'
 import type { ParallelLight } from './shadowMaps'
 
@@ -36,8 +35,6 @@ export interface ShadowedShafts extends AirShadows {
   readonly camera: Camera
   /** Light whose shadows fall into the air. */
   readonly light: ParallelLight
-  /** Source of the light. */
-  readonly source: LightSource
   /** True if there are shadows to be drawn, as of the last `prepare` for the camera. */
   readonly isActive: boolean
   /** Grows whenever shaders with {@link litAt} must be compiled anew. */
