@@ -158,7 +158,11 @@ export async function timeShafts(
   const costs: ShaftCost[] = []
   for (const what of cases) {
     const withoutMs = await timeCity(device, size, frames, { ...what, quality: null })
-    for (const quality of ['low', 'medium', 'high'] as const) {
+    const qualities = ['low', 'medium', 'high'] as const
+    for (const quality of [
+      ...qualities,
+      ...(what.path === 'post' ? (['reference'] as const) : [])
+    ]) {
       const ms = await timeCity(device, size, frames, { ...what, quality })
       costs.push({ ...what, quality, withoutMs, shaftsMs: ms - withoutMs })
     }

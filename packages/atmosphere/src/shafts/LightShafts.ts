@@ -25,7 +25,7 @@ import { SunPolarMap } from './SunPolarMap'
 import { isShadowed, mediaIn } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import { litAt, type ShadowedAir } from './tsl/shadowsAlong'
-import { distanceOf, without } from './tsl/without'
+import { distanceOf, withoutLost } from './tsl/without'
 
 /** Options of {@link LightShafts}. */
 export interface LightShaftsOptions {
@@ -300,7 +300,7 @@ export class LightShafts implements ShadowedShafts {
   medium({ view, direction, cosView, ...to }: LayerRay, air: MediumSegment): MediumSegment {
     const lit = viewNodes(this.atmosphere, view.camera, this.source)
     const taken = lit.source.irradiance.mul(this.strengthNow)
-    return without(air, this.strengthNow, () => {
+    return withoutLost(air, this.strengthNow, () => {
       if (!this.#isMarched) {
         return taken.mul(to.distance ? this.#volume.lostTo(to.distance) : this.#volume.lostToSky())
       }
