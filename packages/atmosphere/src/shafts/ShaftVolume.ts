@@ -178,7 +178,9 @@ export class ShaftVolume {
       const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))
       const isLast = slice.greaterThan(SLICES - 1.5)
       const part: Slice = { from, to: isLast.select(FAR, next).toConst() }
-      const ray = this.#rayAt(view, place.sub(0.5).div(this.#size))
+      // Aside by a quarter of a step, so that four rays have edges at four places. Without: edges displaced by 0.29°.
+      const aside = place.yx.mod(2).sub(0.5).mul(0.5)
+      const ray = this.#rayAt(view, place.sub(0.5).add(aside).div(this.#size))
       const jitter = staggered(place)
       const light = vec4(0).toVar()
       const edges = vec4(0).toVar()
