@@ -158,11 +158,7 @@ export async function timeShafts(
   const costs: ShaftCost[] = []
   for (const what of cases) {
     const withoutMs = await timeCity(device, size, frames, { ...what, quality: null })
-    const qualities = ['low', 'medium', 'high'] as const
-    for (const quality of [
-      ...qualities,
-      ...(what.path === 'post' ? (['reference'] as const) : [])
-    ]) {
+    for (const quality of ['low', 'medium', 'high'] as const) {
       const ms = await timeCity(device, size, frames, { ...what, quality })
       costs.push({ ...what, quality, withoutMs, shaftsMs: ms - withoutMs })
     }

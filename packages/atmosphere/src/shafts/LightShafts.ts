@@ -31,7 +31,7 @@ import { distanceOf, withoutLost } from './tsl/without'
 export interface LightShaftsOptions {
   /** See {@link LightShafts.strength}; by default 1. */
   strength?: number
-  /** See {@link LightShafts.quality}; by default `'high'`. */
+  /** See {@link LightShafts.quality}; by default `'medium'`. */
   quality?: LightShaftsQuality
   /** See {@link LightShafts.enabled}; by default true. */
   enabled?: boolean
@@ -52,7 +52,7 @@ const _axes = new Matrix4()
  *
  * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they
  * are added to the atmosphere: `atmosphere.add(shafts)`. Each fragment
- * reads a volume of some 144 × 81 rays in 24 slices. Compile a scene before its first frame, which else has none in its sky:
+ * reads a volume of 144 × 81 rays in 24 slices, which is drawn once a frame. Compile a scene before its first frame, which else has none in its sky:
  * `await renderer.compileAsync(scene, camera)`.
  *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
@@ -95,7 +95,7 @@ export class LightShafts implements ShadowedShafts {
   #setStrength = 1
   /** Render whose shadows the map has. */
   #render = ''
-  #quality: LightShaftsQuality = 'high'
+  #quality: LightShaftsQuality = 'medium'
   #enabled = true
   #isActive = false
 

@@ -177,7 +177,7 @@ describe('bad input to light shafts', () => {
     const shafts = lightShafts(atmosphere, camera, light, { strength: 0.5 })
     expect(() => shafts.set({ strength: 2, quality: wrong('best') })).toThrow('quality')
     expect(shafts.strength).toBe(0.5)
-    expect(shafts.quality).toBe('high')
+    expect(shafts.quality).toBe('medium')
   })
 })
 
