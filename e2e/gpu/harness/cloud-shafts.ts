@@ -34,11 +34,12 @@ export interface North {
 export function marchedLoss(
   { view, sun }: North,
   distance: number,
-  darkAt: (distance: number) => number
+  darkAt: (distance: number) => number,
+  altitude = 2
 ): { whole: number[]; lost: number[] } {
   const air = parameters()
   const ray = {
-    radius: air.bottomRadius + 2,
+    radius: air.bottomRadius + altitude,
     cosView: Math.sin(radians(view)),
     cosLight: Math.sin(radians(sun)),
     cosViewLight: Math.cos(radians(view - sun))

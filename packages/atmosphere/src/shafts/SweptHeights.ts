@@ -46,7 +46,7 @@ export class SweptHeights {
     this.#targets = [target(), target()]
   }
 
-  /** Heights up to which there is shadow [m]. */
+  /** Heights up to which there is shadow, in red, and of the ground, in green [m]. */
   get texture(): Texture {
     return this.#targets[0].texture
   }
@@ -76,9 +76,10 @@ export class SweptHeights {
   #draw(renderer: Renderer, toLight: Vector3): void {
     const { size, heightAt } = this.#field
     if (this.#passes.length === 0) {
-      const first = Fn(() =>
-        vec4(heightAt(uv() as unknown as Vec2).clamp(-MAX_HEIGHT, MAX_HEIGHT), 0, 0, 0)
-      )()
+      const first = Fn(() => {
+        const height = heightAt(uv() as unknown as Vec2).clamp(-MAX_HEIGHT, MAX_HEIGHT)
+        return vec4(height, height, 0, 0)
+      })()
       this.#passes = [first, this.#sweep(0), this.#sweep(1)].map(
         output => new FragmentPass('Welkin.HeightFieldShadow', output)
       )
@@ -103,9 +104,9 @@ export class SweptHeights {
       const at = uv() as unknown as Vec2
       const next = at.add(this.#step).toConst() as Vec2
       const cast = (sampleLevel0(source, next).r as Float).sub(this.#fall)
-      const here = (sampleLevel0(source, at).r as Float).toConst()
+      const { r: here, g: ground } = sampleLevel0(source, at).toConst() as unknown as Vec4
       const higher = isInField(next).greaterThan(0.5).select(here.max(cast), here)
-      return vec4(higher.clamp(-MAX_HEIGHT, MAX_HEIGHT), 0, 0, 0)
+      return vec4(higher.clamp(-MAX_HEIGHT, MAX_HEIGHT), ground, 0, 0)
     })()
   }
 

@@ -59,14 +59,16 @@ export class SweptShadow {
    * Part of the light that arrives at a place, in [0, 1].
    *
    * @param place - Place in the field, and height [m].
-   * @param raised - Height that is added to it, in that of shadows' edges.
+   * @param isSurface - True on the ground, which between texels of the field is lower than it at some places, and higher at others:
+   *   it is as lit as the field there, raised by the height over which shadows end.
    */
-  transmittance(place: Vec3, raised = 0): Float {
-    const dark = (sampleLevel0(this.#map, place.xy).r as Float).toConst()
-    const lit = place.z
+  transmittance(place: Vec3, isSurface = false): Float {
+    const { r: dark, g: ground } = sampleLevel0(this.#map, place.xy).toConst()
+    const height = isSurface ? place.z.max(ground) : place.z
+    const lit = height
       .sub(dark)
       .div(dark.abs().mul(HALF_STEP).add(this.#blur))
-      .add(1 + raised)
+      .add(isSurface ? 2 : 1)
       .clamp()
     return isInField(place.xy).lessThan(0.5).select(1, lit).toConst()
   }

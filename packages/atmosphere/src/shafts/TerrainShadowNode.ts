@@ -26,8 +26,8 @@ const _target = new Vector3()
  * Object.assign(sun.shadow, { shadowNode: terrainShadow(hills, sun, shadow(sun)) })
  * ```
  *
- * It falls on what has `receiveShadow`, the terrain too: what stands no deeper below the heights of the field than light
- * falls over one of its texels is lit. Light shafts of the same light read the same map.
+ * It falls on what has `receiveShadow`, the terrain too: ground that lies below the field, between its texels, is as lit as
+ * the field there. Light shafts of the same light read the same map.
  */
 export class TerrainShadowNode extends Node<'float'> {
   static get type(): string {
@@ -71,8 +71,7 @@ export class TerrainShadowNode extends Node<'float'> {
   override setup(): Node {
     const place = (this.#toField as unknown as Mat4).mul(vec4(positionView, 1)).xyz.toConst()
     this.#swept ??= new SweptShadow(this.hills, this.light)
-    // Raised, so that terrain between texels does not stand in its own shadow.
-    const passing = this.#swept.transmittance(place, 1)
+    const passing = this.#swept.transmittance(place, true)
     return this.shadowNode === null ? passing : passing.mul(this.shadowNode as Float)
   }
 
