@@ -2,13 +2,16 @@ import { Matrix4, Vector3 } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import type { LightShaftsQuality } from '@welkin/atmosphere'
 import type { Backend } from '../../harness/backend'
+import { drawForward } from '../harness/atmosphere'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
+import { nextFrame } from '../harness/graphics'
+import type { Picture } from '../harness/picture'
 import { addBox, stage, type Stage } from '../harness/shaft-stage'
 
-/** Rows out of the middle of a picture of 1920×1080 and 60°. */
+/** Rows out of the middle of a picture of 1920×1080 and 60° [pixels], and the angle that they span [°]. */
 const size = { width: 1920, height: 24 }
-const FIELD = 4 / 3
+const FIELD = (2 * Math.atan((size.height / 1080) * Math.tan(Math.PI / 6)) * 180) / Math.PI
 
 const ELEVATION = 25
 
@@ -83,22 +86,34 @@ async function displacement(
   renderer: WebGPURenderer,
   quality: LightShaftsQuality,
   elevation: number,
-  [angle, fromSun]: readonly [number, number]
+  [angle, fromSun]: readonly [number, number],
+  isForward = false,
+  offsetDegrees = 0.27
 ): Promise<number> {
   const set = stage(renderer, elevation, { quality })
-  const { camera, atmosphere, shafts } = set
+  const { scene, camera, atmosphere, shafts } = set
   camera.fov = FIELD
   camera.aspect = size.width / size.height
   camera.updateProjectionMatrix()
   const { aside, at } = hideHalf(set, atmosphere.sunDirection, angle * radians)
   // The plane is upright in the picture, and not quite in its middle.
   camera.up.copy(at(fromSun * radians - 0.5 * Math.PI)).negate()
-  const offset = 0.27 * radians
+  const offset = offsetDegrees * radians
   const direction = at(fromSun * radians).addScaledVector(aside, offset)
   camera.lookAt(direction.add(camera.position))
-  const shadowed = await set.draw()
+  const forward = async (): Promise<Picture> => {
+    camera.updateMatrixWorld()
+    await nextFrame()
+    return drawForward(renderer, scene, camera, atmosphere)
+  }
+  const draw = isForward ? forward : set.draw
+  if (isForward) {
+    atmosphere.add(shafts)
+    await draw()
+  }
+  const shadowed = await draw()
   shafts.enabled = false
-  const lit = await set.draw()
+  const lit = await draw()
   const profile = Array.from({ length: size.width }, (_, x) => {
     const rows = [-8, -4, 0, 4, 8].map(y => size.height / 2 + y)
     return mean(rows.map(y => lit.at(x, y)[1] - shadowed.at(x, y)[1]))
@@ -132,6 +147,19 @@ for (const [quality, backends] of [
     { backends }
   )
 }
+
+gpuTest('has edges of shafts in materials where a half-plane has them', async t => {
+  const renderer = await t.createRenderer(size)
+  const displaced: number[] = []
+  // Rays are 0.8° apart: at one place between them and the next.
+  for (const [i, view] of VIEWS.entries()) {
+    const offset = 0.8 * ((i + 0.5) / VIEWS.length)
+    displaced.push(await displacement(renderer, 'medium', ELEVATION, view, true, offset))
+  }
+  t.note(displaced.map(degrees => `${degrees.toFixed(3)}°`).join(', '))
+  const most = Math.max(...displaced.map(Math.abs))
+  expectTrue(most <= GOAL, `edges are displaced by ${most.toFixed(3)}°`)
+})
 
 gpuTest('has rays opposite a sunset run together at the point opposite the sun', async t => {
   const renderer = await t.createRenderer(size)

@@ -254,7 +254,7 @@ gpuTest(
   'changes strength, quality and being on without a compile, and frees what it made',
   async t => {
     const renderer = await t.createRenderer(size)
-    const { scene, draw, shafts, dispose } = stage(renderer, 15)
+    const { scene, draw, shafts, dispose } = stage(renderer, 15, { quality: 'high' })
     addBox(scene, [0, 200, -600], [200, 500, 40])
     const full = await draw()
     const compilations = countCompilations(renderer)

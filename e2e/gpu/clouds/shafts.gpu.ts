@@ -1,10 +1,7 @@
 import { horizontalIrradiance } from '@welkin/atmosphere'
 import { cloudPreset, CloudLayers, CloudLightTable, CloudNoise, clouds } from '@welkin/clouds'
-import { Vector3 } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
-import { distanceToTop } from '../../../packages/atmosphere/src/air/cpu/boundary'
-import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
 import { meanDecks } from '../../../packages/clouds/src/environment/tsl/decks'
 import {
   diffuseRatio,
@@ -12,7 +9,14 @@ import {
 } from '../../../packages/clouds/src/environment/tsl/overcast'
 import { loop, type Float, type Vec3, type Vec4 } from '../../../packages/clouds/src/tsl-types'
 import { cloudExtinction } from '../harness/cloud-extinction'
-import { castsOnce, measuredLoss, unseenClouds } from '../harness/cloud-shafts'
+import {
+  castsOnce,
+  lookAt,
+  marchedLoss,
+  measuredLoss,
+  radians,
+  unseenClouds
+} from '../harness/cloud-shafts'
 import { drawForward, drawToFloat } from '../harness/atmosphere'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -20,62 +24,9 @@ import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest, takeFineShadows } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
-import {
-  expectSame,
-  parameters,
-  stage,
-  stageSize as size,
-  type Stage
-} from '../harness/shaft-stage'
+import { expectSame, stage, stageSize as size } from '../harness/shaft-stage'
 
 takeFineShadows()
-
-const radians = (degrees: number): number => (degrees * Math.PI) / 180
-
-/** Pieces of a ray whose lost light is summed in float64. */
-const PIECES = 160
-
-/** A view ray of the stage's camera, in the plane of sun and zenith. */
-interface North {
-  /** Above the horizon in the north, where the sun is; beyond 90° it looks south [°]. */
-  view: number
-  sun: number
-}
-
-/** Light scattered once on a ray, all of it and what is lost where a part of the light does not arrive, in float64. */
-function marchedLoss(
-  { view, sun }: North,
-  distance: number,
-  darkAt: (distance: number) => number
-): { whole: number[]; lost: number[] } {
-  const air = parameters()
-  const ray = {
-    radius: air.bottomRadius + 2,
-    cosView: Math.sin(radians(view)),
-    cosLight: Math.sin(radians(sun)),
-    cosViewLight: Math.cos(radians(view - sun))
-  }
-  const end = Math.min(distance, distanceToTop(ray.radius, ray.cosView, air.topRadius))
-  const lost = [0, 0, 0]
-  let before = [0, 0, 0, 0]
-  for (let i = 1; i <= PIECES; i++) {
-    const at = (part: number): number => end * part ** 3
-    const sum = inScatter(air, null, ray, at(i / PIECES))
-    const dark = darkAt(at((i - 0.5) / PIECES))
-    lost.forEach((_, k) => (lost[k] += dark * (sum[k] - before[k])))
-    before = sum
-  }
-  return { whole: before, lost }
-}
-
-/** Has the stage's camera look north or south. */
-function lookAt({ camera }: Stage, view: number): void {
-  camera.fov = 0.2
-  camera.updateProjectionMatrix()
-  camera.lookAt(
-    new Vector3(0, Math.sin(radians(view)), -Math.cos(radians(view))).add(camera.position)
-  )
-}
 
 const deck = { ...fog, baseAltitude: 1500, topAltitude: 1600 }
 

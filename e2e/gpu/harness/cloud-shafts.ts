@@ -8,13 +8,63 @@ import {
   type CloudsNode,
   type CloudsOptions
 } from '@welkin/clouds'
-import { PerspectiveCamera } from 'three'
+import { PerspectiveCamera, Vector3 } from 'three'
 import { float, vec4 } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { distanceToTop } from '../../../packages/atmosphere/src/air/cpu/boundary'
+import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
 import { drawToFloat } from './atmosphere'
 import { coarse } from './cloud-view'
 import { nextFrame } from './graphics'
-import { stageSize as size, type Stage } from './shaft-stage'
+import { parameters, stageSize as size, type Stage } from './shaft-stage'
+
+export const radians = (degrees: number): number => (degrees * Math.PI) / 180
+
+/** Pieces of a ray whose lost light is summed in float64. */
+const PIECES = 160
+
+/** A view ray of the stage's camera, in the plane of sun and zenith. */
+export interface North {
+  /** Above the horizon in the north, where the sun is; beyond 90° it looks south [°]. */
+  view: number
+  sun: number
+}
+
+/** Light scattered once on a ray, all of it and what is lost where a part of the light does not arrive, in float64. */
+export function marchedLoss(
+  { view, sun }: North,
+  distance: number,
+  darkAt: (distance: number) => number,
+  altitude = 2
+): { whole: number[]; lost: number[] } {
+  const air = parameters()
+  const ray = {
+    radius: air.bottomRadius + altitude,
+    cosView: Math.sin(radians(view)),
+    cosLight: Math.sin(radians(sun)),
+    cosViewLight: Math.cos(radians(view - sun))
+  }
+  const end = Math.min(distance, distanceToTop(ray.radius, ray.cosView, air.topRadius))
+  const lost = [0, 0, 0]
+  let before = [0, 0, 0, 0]
+  for (let i = 1; i <= PIECES; i++) {
+    const at = (part: number): number => end * part ** 3
+    const sum = inScatter(air, null, ray, at(i / PIECES))
+    const dark = darkAt(at((i - 0.5) / PIECES))
+    lost.forEach((_, k) => (lost[k] += dark * (sum[k] - before[k])))
+    before = sum
+  }
+  return { whole: before, lost }
+}
+
+/** Has the stage's camera look north or south. */
+export function lookAt({ camera }: Stage, view: number): void {
+  camera.fov = 0.2
+  camera.updateProjectionMatrix()
+  camera.lookAt(
+    new Vector3(0, Math.sin(radians(view)), -Math.cos(radians(view))).add(camera.position)
+  )
+}
 
 /** Clouds that are drawn for their shadow maps, by a camera of their own, and not seen. */
 export async function unseenClouds(
@@ -22,7 +72,8 @@ export async function unseenClouds(
   { camera: { position }, atmosphere }: Stage,
   layers: CloudLayers,
   noise: CloudNoise,
-  extinction?: CloudsOptions['extinction']
+  extinction?: CloudsOptions['extinction'],
+  precipitation?: CloudsOptions['precipitation']
 ): Promise<{ node: CloudsNode; draw: () => Promise<void>; dispose: () => void }> {
   const light = new CloudLightTable()
   const camera = new PerspectiveCamera(60, 2, 1, 1e6)
@@ -31,7 +82,8 @@ export async function unseenClouds(
     quality: coarse,
     noise,
     light,
-    extinction
+    extinction,
+    precipitation
   })
   node.time = 0
   const pipeline = new RenderPipeline(renderer)

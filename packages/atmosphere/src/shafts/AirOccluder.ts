@@ -4,11 +4,15 @@ import type { Atmosphere } from '../Atmosphere'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { AirShadows } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import type { LightSource } from '../view/LightSource'
 import type { ViewUniforms } from '../view/ViewUniforms'
 import type { ParallelLight } from './shadowMaps'
 
-/** A point in the air that a camera looks through, as shader nodes. */
+/**
+ * A point in the air that a camera looks through, as shader nodes.
+ *
+ * Its place is in the mapped space: metres along the axes of ECEF (x to the equator at 0° E, z to the north pole), of which each
+ * is scaled so that the planet's ellipsoid is a sphere of radius `parameters.bottomRadius`, for Earth by 0.3 % at most.
+ */
 export interface AirPoint {
   /** The camera's view in the light whose shadow it is; `view.localCoordinates(offset)` has altitude and zenith. */
   readonly view: ViewUniforms
@@ -36,8 +40,6 @@ export interface ShadowedShafts extends AirShadows {
   readonly camera: Camera
   /** Light whose shadows fall into the air. */
   readonly light: ParallelLight
-  /** Source of the light. */
-  readonly source: LightSource
   /** True if there are shadows to be drawn, as of the last `prepare` for the camera. */
   readonly isActive: boolean
   /** Grows whenever shaders with {@link litAt} must be compiled anew. */

@@ -2,6 +2,7 @@ import type { Camera } from 'three'
 import type { NodeFrame, Renderer, UniformNode } from 'three/webgpu'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { ViewNodes } from '../view/ViewNodes'
+import type { ShaftScreens } from './ShaftScreens'
 import type { ShaftSteps } from './tsl/lostLight'
 import type { ShadowedAir } from './tsl/shadowsAlong'
 
@@ -18,14 +19,12 @@ export interface CameraShafts {
   readonly isActive: boolean
   /** Grows whenever its shader changes. */
   readonly version: number
-  /** True if a foreground layer is drawn, by whose node shafts are. */
-  readonly hasForeground: boolean
+  /** Pictures that are drawn with them. */
+  readonly screens: ShaftScreens
   /** True if materials draw the shafts themselves. */
   readonly isForward: boolean
   /** Part of the light that air in shadow loses; 0 where shafts are off. */
   readonly strengthNow: UniformNode<'float', number>
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void
   update(view: AtmosphereView): void
-  /** Called by a picture's shafts that are disposed of. */
-  forget(screen: object): void
 }

@@ -7,6 +7,7 @@ import {
   RedFormat,
   Vector3
 } from 'three'
+import type { Camera } from 'three'
 import { checkPositive, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkRange, withDefaults } from '../check'
@@ -31,12 +32,22 @@ export interface ShadowingGround {
 
 const DEFAULTS: Required<GroundShadowOptions> = { width: 1e5, texels: 256, size: 512 }
 
-/** Way from the middle of the square, in edges of it, after which another is begun. */
-const AWAY = 1 / 8
+/**
+ * Distance of a camera from the middle of its square after which another square is begun; and from the camera whose square it
+ * is up to which other cameras share it: in edges of the square.
+ */
+const MAX_DISTANCE = 1 / 8
 
 /** Rows of heights found in a frame while another square is made. */
-const ROWS = 2
+const ROWS_PER_FRAME = 2
 
+/** Squares of cameras far apart that there may be at once. */
+const MAX_SQUARES = 4
+
+/** Uses by other cameras after which the camera of a square is taken to be gone. */
+const MAX_IDLE = 64
+
+const _position = new Vector3()
 const _subpoint = new Vector3()
 const _place = new Vector3()
 const _world = new Vector3()
@@ -54,7 +65,8 @@ const _toWorld = new Matrix4()
  *
  * The planet's curvature is in it. As the camera moves by an eighth of the width, the ground is asked for the heights of
  * another square, two rows a frame, and the square changes once it is whole. The first is made at once: a quarter of a
- * second with mountains from noise.
+ * second with mountains from noise. Cameras an eighth of the width apart have squares of their own, of which there are
+ * up to four; others take the place of the one that was not used for longest.
  */
 export class GroundShadow extends HeightFieldShadow {
   /** Shared, not owned. */
@@ -75,6 +87,13 @@ export class GroundShadow extends HeightFieldShadow {
   readonly #square = new Matrix4()
   /** Its middle, on the ellipsoid, ECEF [m]. */
   readonly #middle = new Vector3(NaN, NaN, NaN)
+  /** The camera that it follows, its subpoint, ECEF [m], and the number of its last use. */
+  #camera: Camera | null = null
+  readonly #subpoint = new Vector3(NaN, NaN, NaN)
+  #used = 0
+  /** Squares of other cameras, and the number of uses of all. */
+  readonly #others: GroundShadow[] = []
+  #uses = 0
 
   /** @throws If an argument is missing or out of its range, or the atmosphere's world is flat. */
   constructor(atmosphere: Atmosphere, ground: ShadowingGround, options: GroundShadowOptions = {}) {
@@ -105,13 +124,56 @@ export class GroundShadow extends HeightFieldShadow {
     this.#next = new Uint16Array(texels ** 2)
   }
 
+  /** Square of a camera, which follows it: its own, or that of another camera nearby. */
+  override fieldOf(camera: Camera): GroundShadow {
+    _position.setFromMatrixPosition(camera.matrixWorld)
+    this.#uses++
+    const square = this.#squareOf(camera)
+    if (square.#camera !== camera && this.#isIdle(square)) square.#camera = camera
+    if (square.#camera === camera) {
+      square.#used = this.#uses
+      square.follow(_position)
+    } else square.#place()
+    return square
+  }
+
+  /** Square of a camera at `_position`; of those whose camera is gone one that is near comes first. */
+  #squareOf(camera: Camera): GroundShadow {
+    const squares = [this, ...this.#others].toSorted((a, b) => a.#used - b.#used)
+    const { atmosphere, ground, width, texels, size } = this
+    _subpoint.copy(_position).applyMatrix4(atmosphere.worldToECEF)
+    atmosphere.ellipsoid.footPoint(_subpoint, _subpoint)
+    const isNear = (square: GroundShadow): boolean =>
+      square.#subpoint.distanceTo(_subpoint) < MAX_DISTANCE * width
+    const found =
+      squares.find(square => square.#camera === camera) ??
+      squares.find(isNear) ??
+      squares.find(square => this.#isIdle(square))
+    if (found !== undefined) return found
+    if (squares.length === MAX_SQUARES) {
+      squares[0].#camera = null
+      return squares[0]
+    }
+    const square = new GroundShadow(atmosphere, ground, { width, texels, size })
+    this.#others.push(square)
+    return square
+  }
+
+  #isIdle(square: GroundShadow): boolean {
+    return square.#camera === null || this.#uses - square.#used > MAX_IDLE
+  }
+
   /**
-   * Moves on with a viewer, and with the world's origin; called for each camera that draws its shadows.
+   * Moves on with a viewer, and with the world's origin.
    *
    * @param position - World [units].
    */
-  override follow(position: Vector3): void {
+  follow(position: Vector3): void {
     this.#find(position)
+    this.#place()
+  }
+
+  #place(): void {
     // The origin of the world, its axes and units may have changed since.
     if (!Number.isNaN(this.#middle.x)) {
       this.matrix.copy(this.atmosphere.worldToECEF).invert().multiply(this.#square)
@@ -121,14 +183,14 @@ export class GroundShadow extends HeightFieldShadow {
   /** Finds some heights of the next square, once the camera is far from the middle of the one in use. */
   #find(position: Vector3): void {
     const { atmosphere, width, texels } = this
+    const subpoint = this.#subpoint.copy(position).applyMatrix4(atmosphere.worldToECEF)
+    atmosphere.ellipsoid.footPoint(subpoint, subpoint)
     if (this.#found === 0) {
-      _subpoint.copy(position).applyMatrix4(atmosphere.worldToECEF)
-      atmosphere.ellipsoid.footPoint(_subpoint, _subpoint)
-      if (_subpoint.distanceTo(this.#middle) < AWAY * width) return
-      atmosphere.ellipsoid.eastNorthUpFrame(_subpoint, this.#axes)
+      if (subpoint.distanceTo(this.#middle) < MAX_DISTANCE * width) return
+      atmosphere.ellipsoid.eastNorthUpFrame(subpoint, this.#axes)
     }
     const isFirst = Number.isNaN(this.#middle.x)
-    const end = Math.min(isFirst ? Infinity : this.#found + ROWS * texels, texels ** 2)
+    const end = Math.min(isFirst ? Infinity : this.#found + ROWS_PER_FRAME * texels, texels ** 2)
     for (; this.#found < end; this.#found++) {
       // Half floats: some devices blend no others.
       this.#next[this.#found] = DataUtils.toHalfFloat(this.#heightAt(this.#found))
@@ -138,12 +200,14 @@ export class GroundShadow extends HeightFieldShadow {
 
   /** Asks for the heights anew, at once, after the ground or the world has changed. */
   refresh(): void {
+    for (const square of this.#others) square.refresh()
     this.#middle.set(NaN, NaN, NaN)
     this.#found = 0
   }
 
   /** Frees the heights. */
   dispose(): void {
+    for (const square of this.#others) square.dispose()
     this.heights.dispose()
   }
 

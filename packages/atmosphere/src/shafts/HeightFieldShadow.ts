@@ -1,4 +1,4 @@
-import { Matrix3, Matrix4, Vector3, type Texture } from 'three'
+import { Matrix3, Matrix4, Vector3, type Camera, type Texture } from 'three'
 import { renderGroup, texture, uniform, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { checkMatrix, checkOptions, fail } from '@welkin/geo'
@@ -7,6 +7,7 @@ import type { AtmosphereView } from '../view/AtmosphereView'
 import type { AirOccluder, AirPoint, AirShadow, ShadowedShafts } from './AirOccluder'
 import type { ParallelLight } from './shadowMaps'
 import { SweptHeights } from './SweptHeights'
+import { SweptShadow, type SweptHills } from './SweptShadow'
 
 /** Options of {@link HeightFieldShadow}. */
 export interface HeightFieldShadowOptions {
@@ -26,29 +27,36 @@ const _linear = new Matrix3()
  */
 export type HeightField = Texture | ((at: Vec2) => Float)
 
+/** Sine of the least angle between the axes of a field that can be told from none. */
+const LEAST_ANGLE = 1e-9
+
+/** True if axes of a matrix have no length, or lie in one plane. */
+function isSingular(matrix: Matrix4): boolean {
+  const { elements } = matrix
+  const lengths = [0, 4, 8].map(i => Math.hypot(elements[i], elements[i + 1], elements[i + 2]))
+  const box = lengths.reduce((product, length) => product * length)
+  return !(Math.abs(matrix.determinant()) > LEAST_ANGLE * box)
+}
+
 /** Shadow of a height field in the air, in one light. */
 class HillsInAir implements AirShadow {
-  readonly #field: HeightFieldShadow
   readonly #shafts: ShadowedShafts
-  readonly #swept: SweptHeights
+  readonly #swept: SweptShadow
   /** Displacements from the camera in the mapped space [m] to places and heights of the field. */
   readonly #toField = uniform(new Matrix4()).setGroup(renderGroup)
 
   constructor(field: HeightFieldShadow, shafts: ShadowedShafts) {
-    this.#field = field
     this.#shafts = shafts
-    this.#swept = field.acquire(shafts.light)
+    this.#swept = new SweptShadow(field, shafts.light)
   }
 
   update(view: AtmosphereView, renderer: Renderer): void {
-    const { matrix } = this.#field
-    this.#field.follow(_direction.setFromMatrixPosition(view.camera.matrixWorld))
     view.atmosphere.space.displacement(_axes.identity(), _linear)
     _axes.setFromMatrix3(_linear.invert()).copyPosition(view.camera.matrixWorld)
-    const toField = this.#toField.value.copy(matrix).invert()
-    const toLight = this.#shafts.source.direction(_direction, view.camera.position)
-    this.#swept.update(renderer, toLight, toField)
-    toField.multiply(_axes)
+    const { camera } = view
+    const toLight = this.#shafts.source.direction(_direction, camera.position)
+    const toField = this.#swept.update(renderer, camera, toLight)
+    this.#toField.value.multiplyMatrices(toField, _axes)
   }
 
   transmittance(): (place: AirPoint) => Float {
@@ -59,7 +67,7 @@ class HillsInAir implements AirShadow {
   }
 
   dispose(): void {
-    this.#field.release(this.#shafts.light)
+    this.#swept.dispose()
   }
 }
 
@@ -77,7 +85,7 @@ class HillsInAir implements AirShadow {
  * curvature off the heights of a large one. Two textures of 2 MB at the default size, of which air reads one; heights are
  * kept within ±60 km.
  */
-export class HeightFieldShadow implements AirOccluder {
+export class HeightFieldShadow implements AirOccluder, SweptHills {
   /** Heights as a shader function of the place in the field [m]. */
   readonly heightAt: (at: Vec2) => Float
   /**
@@ -92,13 +100,14 @@ export class HeightFieldShadow implements AirOccluder {
   /** Maps by the source of light, or the light that has none, and how many use them. */
   readonly #swept = new Map<object, { map: SweptHeights; users: number }>()
 
-  /** @throws If an argument is of the wrong kind, or an option unknown or out of range. */
+  /** @throws If an argument is of the wrong kind, the matrix has no inverse, or an option is unknown or out of range. */
   constructor(heights: HeightField, matrix: Matrix4, options: HeightFieldShadowOptions = {}) {
     const { size = 512 } = checkOptions('HeightFieldShadow', options, 'size')
     const isTexture = (heights as Texture | undefined)?.isTexture
     if (!isTexture && typeof heights !== 'function')
       fail('HeightFieldShadow', 'heights must be a Texture or a function', heights)
     checkMatrix('HeightFieldShadow', 'matrix', matrix)
+    if (isSingular(matrix)) fail('HeightFieldShadow', 'matrix must have an inverse', matrix)
     if (!(size >= 2 && size <= 4096 && Number.isInteger(Math.log2(size))))
       fail('HeightFieldShadow', 'size must be a power of two in [2, 4096]', size)
     const red = isTexture ? texture(heights as Texture) : null
@@ -112,13 +121,9 @@ export class HeightFieldShadow implements AirOccluder {
     return new HillsInAir(this, shafts)
   }
 
-  /**
-   * Called for each camera that draws its shadows, before they are drawn; does nothing here.
-   *
-   * @param _position - World [units].
-   */
-  follow(_position: Vector3): void {
-    // A field that follows the camera overrides it.
+  /** Field whose shadows a camera sees, called before they are drawn: this one, but for a field that follows cameras. */
+  fieldOf(_camera: Camera): HeightFieldShadow {
+    return this
   }
 
   /** Map in a light, shared by all that read it: `release` it after use. */

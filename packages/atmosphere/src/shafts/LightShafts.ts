@@ -8,7 +8,7 @@ import { checkCamera, checkShadowLight } from '../check'
 import type { Float } from '../tsl-types'
 import { matrix4, number } from '../uniforms'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
-import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
+import type { AirPicture, ForegroundLayer, ScreenShadows } from '../view/AirShadows'
 import type { LightSource } from '../view/LightSource'
 import type { LayerRay, SkyLayer } from '../view/SkyLayer'
 import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
@@ -16,20 +16,22 @@ import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 import type { AirOccluder, AirViewRay, ShadowedShafts } from './AirOccluder'
 import { CastShadows } from './CastShadows'
 import { ScreenShafts } from './ScreenShafts'
-import { claimShadow, drawShadow, shadowMapsOf, type ParallelLight } from './shadowMaps'
+import { checkPicture, ShaftScreens } from './ShaftScreens'
+import { claimShadow, drawShadow, releaseShadow, shadowMapsOf } from './shadowMaps'
+import type { ParallelLight } from './shadowMaps'
 import { qualities, qualityNames, type LightShaftsQuality } from './quality'
 import { ShaftVolume } from './ShaftVolume'
 import { SunPolarMap } from './SunPolarMap'
 import { isShadowed, mediaIn } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import { litAt, type ShadowedAir } from './tsl/shadowsAlong'
-import { distanceOf, without } from './tsl/without'
+import { distanceOf, withoutLost } from './tsl/without'
 
 /** Options of {@link LightShafts}. */
 export interface LightShaftsOptions {
   /** See {@link LightShafts.strength}; by default 1. */
   strength?: number
-  /** See {@link LightShafts.quality}; by default `'high'`. */
+  /** See {@link LightShafts.quality}; by default `'medium'`. */
   quality?: LightShaftsQuality
   /** See {@link LightShafts.enabled}; by default true. */
   enabled?: boolean
@@ -50,7 +52,7 @@ const _axes = new Matrix4()
  *
  * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they
  * are added to the atmosphere: `atmosphere.add(shafts)`. Each fragment
- * reads a volume of some 144 × 81 rays in 24 slices. Compile a scene before its first frame, which else has none in its sky:
+ * reads a volume of 144 × 81 rays in 24 slices, which is drawn once a frame. Compile a scene before its first frame, which else has none in its sky:
  * `await renderer.compileAsync(scene, camera)`.
  *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
@@ -89,11 +91,11 @@ export class LightShafts implements ShadowedShafts {
   #version = 0
   /** Part of the light that air in shadow loses; 0 where shafts are off. */
   readonly strengthNow = number()
-  readonly #screens = new Set<ScreenShafts>()
+  readonly screens = new ShaftScreens()
   #setStrength = 1
   /** Render whose shadows the map has. */
   #render = ''
-  #quality: LightShaftsQuality = 'high'
+  #quality: LightShaftsQuality = 'medium'
   #enabled = true
   #isActive = false
 
@@ -120,11 +122,12 @@ export class LightShafts implements ShadowedShafts {
     this.view = viewNodes(atmosphere, camera, this.source)
     this.#volume = new ShaftVolume(camera)
     const shadows = this.#shadows
-    const { map, frame, maximumRho } = this.#map
+    const { map, frame, maximumRho, intensity } = this.#map
     const shadowedIn = (media: () => SkyLayer[]): ShadowedAir => ({
       map,
       frame,
       maximumRho,
+      intensity,
       get shadows() {
         return shadows.all
       },
@@ -134,7 +137,7 @@ export class LightShafts implements ShadowedShafts {
     this.shadowedAir = shadowedIn(() => this.#media)
     this.#shadowedSky = shadowedIn(() => this.#media.filter(({ leavesSky }) => !leavesSky))
     this.set(options)
-    claimShadow(light)
+    claimShadow(light, this)
   }
 
   /**
@@ -225,28 +228,16 @@ export class LightShafts implements ShadowedShafts {
     return qualities[this.#quality].spacing
   }
 
-  upTo(depthNode: Node | null, foreground?: ForegroundLayer): ScreenShadows {
+  upTo(depthNode: Node | null, foreground?: ForegroundLayer, picture?: AirPicture): ScreenShadows {
+    if (picture) checkPicture(picture, this)
     const screen = new ScreenShafts(this, depthNode, foreground)
-    this.#screens.add(screen)
+    this.screens.add(screen)
     return screen
-  }
-
-  /** Called by a picture's shafts that are disposed of. */
-  forget(screen: object): void {
-    this.#screens.delete(screen as ScreenShafts)
-  }
-
-  /** True if a foreground layer is drawn, by whose node shafts are. */
-  get hasForeground(): boolean {
-    return [...this.#screens].some(({ foreground }) => foreground?.isDrawn)
   }
 
   /** True if materials draw the shafts themselves. */
   get isForward(): boolean {
-    const isPost = [...this.#screens].some(
-      ({ foreground, isMesh }) => foreground === undefined && !isMesh
-    )
-    return !isPost && this.#isLayer
+    return !this.screens.hasPostEffect && this.#isLayer
   }
 
   get #isLayer(): boolean {
@@ -261,6 +252,8 @@ export class LightShafts implements ShadowedShafts {
 
   prepare(renderer: Renderer, { camera }: AtmosphereView, frame?: NodeFrame): void {
     if (camera !== this.camera) return
+    // Anew, after a dispose.
+    claimShadow(this.light, this)
     const { atmosphere, source, steps } = this
     const view = atmosphere.viewOf(camera, source)
     const isLit = this.#enabled && this.#setStrength > 0 && view?.isLit && source.lightsAir
@@ -307,7 +300,7 @@ export class LightShafts implements ShadowedShafts {
   medium({ view, direction, cosView, ...to }: LayerRay, air: MediumSegment): MediumSegment {
     const lit = viewNodes(this.atmosphere, view.camera, this.source)
     const taken = lit.source.irradiance.mul(this.strengthNow)
-    return without(air, this.strengthNow, () => {
+    return withoutLost(air, this.strengthNow, () => {
       if (!this.#isMarched) {
         return taken.mul(to.distance ? this.#volume.lostTo(to.distance) : this.#volume.lostToSky())
       }
@@ -330,12 +323,13 @@ export class LightShafts implements ShadowedShafts {
     return qualities[this.#quality].rays === 0 || isOrthographicCamera === true
   }
 
-  /** Frees its textures. It can be used again. What was added stays, and is not its own. */
+  /** Frees its textures, and the slot of the light's shadow. It can be used again. What was added stays, and is not its own. */
   dispose(): void {
     this.#isActive = false
+    releaseShadow(this.light, this)
     this.#map.dispose()
     this.#volume.dispose()
-    for (const screen of this.#screens) screen.free()
+    for (const screen of this.screens) screen.free()
   }
 }
 

@@ -24,24 +24,30 @@ const OTHER_DEPTH = 0.8
 /** Octaves from a pixel's depth to that of pixels around, which are at one depth. */
 const NEAR_MEAN = 0.2
 
-/** Depth of means of pixels that are not at one, summand of depths where light is steep, and what its sums are below. */
-const NO_DEPTH = 6e4
+/** Depth that marks means of pixels at different depths: none is near it [octaves]. */
+const APART_DEPTH = 6e4
+
+/** Summand of the depth that marks means where light is steep; and limit that marked depths are below [octaves]. */
 const STEEP_DEPTH = 64
-const MOST_STEEP = 128
+const STEEP_LIMIT = 128
 
 /** Least weight in the bilateral upsampling: that of pixels of another depth. */
 const MIN_WEIGHT = 1e-3
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
-const STEEP = 0.12
+const MIXED_OCTAVES = 0.12
 
-/** Greatest light that the targets keep: half floats hold a little more; and scale of light in them. */
-const MOST = 6e4
+/** Greatest number that the targets keep: half floats hold a little more. */
+const MAX_KEPT = 6e4
+
+/** Scale of light in the targets. */
 const LIGHT_SCALE = RADIANCE_SCALE / 8
 
-/** Greatest light that is mixed, in octaves, and least that others are compared with [1/sr]. */
-const MOST_MIXED = Math.log2(MOST) - 4
-const LEAST = 1e-12
+/** Greatest light that is mixed [octaves]. */
+const MAX_MIXED = Math.log2(MAX_KEPT) - 4
+
+/** Least light that other light is compared with [1/sr]. */
+const MIN_LIGHT = 1e-12
 
 /** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
 const PALE = 0.2
@@ -51,10 +57,10 @@ const ROUNDING = 1e-3
 
 /** Parts of the light that are lost, by colours. */
 function partsOf({ lost, lit }: LostLight): Vec3 {
-  const all = luminance(lit).max(LEAST).toConst()
+  const all = luminance(lit).max(MIN_LIGHT).toConst()
   const isBright = vec3(step(all.mul(PALE), lit)).toConst()
   const [taken, whole] = [mix(vec3(luminance(lost)), lost, isBright), mix(vec3(all), lit, isBright)]
-  return taken.div(whole).clamp(-MOST, MOST)
+  return taken.div(whole).clamp(-MAX_KEPT, MAX_KEPT)
 }
 
 /** First or last in each direction, of four by their number. */
@@ -141,8 +147,8 @@ export class LostLightGrid {
         const found = march(at, pixel)
         const { lost, lit, distance } = found
         const scale = float(LIGHT_SCALE).div(this.#growth(distance)).toConst()
-        const light = log2(luminance(lit).max(LEAST).mul(scale))
-        lostOut.assign(vec4(lost.mul(scale).clamp(-MOST, MOST), light))
+        const light = log2(luminance(lit).max(MIN_LIGHT).mul(scale))
+        lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), light))
         partsOut.assign(vec4(partsOf(found), log2(distance)))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
@@ -164,8 +170,8 @@ export class LostLightGrid {
     If(texel.x.greaterThan(size.x.add(1.5)), () => {
       result.assign(read(this.#parts, texel.sub(vec2(size.x.add(1.5), -0.5)).toConst()))
     }).Else(() => {
-      const least = vec2(NO_DEPTH).toVar()
-      const most = vec2(-NO_DEPTH).toVar()
+      const least = vec2(APART_DEPTH).toVar()
+      const most = vec2(-APART_DEPTH).toVar()
       loop('corner', 4, index => {
         const at = texel.add(cornerOf(index)).sub(0.5).toConst() as Vec2
         const [lost, parts] = [read(this.#lost, at), read(this.#parts, at)]
@@ -175,9 +181,9 @@ export class LostLightGrid {
         most.assign(most.max(both))
       })
       const apart = most.sub(least).toConst()
-      const isMixed = apart.y.lessThan(STEEP).and(most.y.lessThan(MOST_MIXED))
+      const isMixed = apart.y.lessThan(MIXED_OCTAVES).and(most.y.lessThan(MAX_MIXED))
       const depth = result.w.add(isMixed.select(0, STEEP_DEPTH))
-      result.w.assign(apart.x.lessThan(SAME_DEPTH).select(depth, NO_DEPTH))
+      result.w.assign(apart.x.lessThan(SAME_DEPTH).select(depth, APART_DEPTH))
     })
     return result
   }
@@ -207,7 +213,7 @@ export class LostLightGrid {
         .div(this.#texelSize)
         .sub(1 - ROUNDING)
         .toConst() as Vec2
-      const isSteep = mean.w.lessThan(MOST_STEEP)
+      const isSteep = mean.w.lessThan(STEEP_LIMIT)
       const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
       const weights = float(0).toVar()
       lost.assign(vec3(0))

@@ -21,14 +21,14 @@ import { distanceOf, FAR } from './tsl/without'
 import { screenRay } from '../view/tsl/screenRay'
 import { DepthRays } from '../view/DepthRays'
 
-/** Part of light from behind a layer that is not worth samples. Greater: shafts end at thin clouds (*Below a broken deck*). */
-const OPAQUE = 0.01
+/** Transmittance below which a foreground layer hides what is behind it. Greater: shafts end at thin clouds (*Below a broken deck*). */
+const MIN_TRANSMITTANCE = 0.01
 
-/** Places between two points of a mesh's ray whose shadows are looked up. Fewer: grain at the edges of shadows, by orthographic cameras. */
-const LOOKS = 6
+/** Samples of the shadow between two points of a mesh's ray. Fewer: grain at the edges of shadows, by orthographic cameras. */
+const MESH_SAMPLES = 6
 
-/** Height in radii of the planet from which meshes have no shafts: shadow maps' rays of light are one direction from there. */
-const FARTHEST = 20
+/** Height in radii of the planet above which meshes have no shafts: from there one direction holds all rays of light. */
+const MAX_MESH_HEIGHT = 20
 
 /** End of a view ray: displacement in the mapped space of what gives its direction, its length, and how far one sees [m]. */
 interface RayEnd {
@@ -82,6 +82,8 @@ export class ScreenShafts implements ScreenShadows {
 
   prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
     const shafts = this.#shafts
+    // Anew, after a dispose.
+    shafts.screens.add(this)
     shafts.prepare(renderer, view, frame)
     shafts.view.update(view)
     shafts.update(view)
@@ -92,7 +94,8 @@ export class ScreenShafts implements ScreenShadows {
 
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
     const shafts = this.#shafts
-    if (this.#isElsewhere) return
+    shafts.screens.add(this)
+    if (this.#isDrawnByForeground) return
     if (this.foreground === undefined) shafts.prepare(renderer, view, frame)
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
     this.grid.resize(width, height, spacingIn(shafts.spacing, width, height))
@@ -115,12 +118,12 @@ export class ScreenShafts implements ScreenShadows {
 
   update(view: AtmosphereView): void {
     this.#shafts.update(view)
-    this.#strength.value = this.#isElsewhere ? 0 : this.#shafts.strengthNow.value
+    this.#strength.value = this.#isDrawnByForeground ? 0 : this.#shafts.strengthNow.value
     this.#isForward.value = Number(this.#shafts.isForward)
   }
 
   lostAt(position: Vec3, isSky: Bool): Vec3 | undefined {
-    if (this.#isElsewhere) return undefined
+    if (this.#isDrawnByForeground) return undefined
     const lost = vec3(0).toVar()
     If(this.#strength.greaterThan(0), () => {
       lost.assign(this.#lostUpTo(this.#endAt(position, isSky)))
@@ -128,7 +131,7 @@ export class ScreenShafts implements ScreenShadows {
     return lost
   }
 
-  drawIn(frame: NodeFrame, sun: object, isMarched: boolean): void {
+  prepareMesh(frame: NodeFrame, sun: object, isMarched: boolean): void {
     const { view, camera, strengthNow } = this.#shafts
     const { atmosphere, source } = view
     const isTheirs = frame.camera === camera && sun === atmosphere && source === atmosphere.sun
@@ -136,7 +139,7 @@ export class ScreenShafts implements ScreenShadows {
     this.#strength.value = this.#marchedStrength.value = 0
     if (seen === undefined) return
     const { bottomRadius } = atmosphere.parameters
-    if (isMarched && seen.height < FARTHEST * bottomRadius) {
+    if (isMarched && seen.height < MAX_MESH_HEIGHT * bottomRadius) {
       this.prepareShadows(frame.renderer!, seen, frame)
       this.#marchedStrength.value = strengthNow.value
     }
@@ -171,9 +174,9 @@ export class ScreenShafts implements ScreenShadows {
     const diffuse = vec4(1).toVar() as Vec4
     If(strength.greaterThan(0), () => {
       const jitter = staggered(screenCoordinate.xy.floor())
-      const share = strength.min(1).div(LOOKS).toConst() as Float
-      loop('look', LOOKS, look => {
-        const part = float(look).add(jitter).div(LOOKS)
+      const share = strength.min(1).div(MESH_SAMPLES).toConst() as Float
+      loop('meshSample', MESH_SAMPLES, index => {
+        const part = float(index).add(jitter).div(MESH_SAMPLES)
         const offset = mix(start, end, part).toConst() as Vec3
         const distance = offset.length().max(1e-3).toConst() as Float
         const ray = { direction: offset.div(distance).toConst() as Vec3, jitter }
@@ -196,14 +199,14 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
-  get #isElsewhere(): boolean {
-    const { hasForeground, isForward } = this.#shafts
-    return this.foreground === undefined && hasForeground && !(this.isMesh && isForward)
+  get #isDrawnByForeground(): boolean {
+    const { screens, isForward } = this.#shafts
+    return this.foreground === undefined && screens.hasForeground && !(this.isMesh && isForward)
   }
 
   dim(color: Vec3): Vec3 {
     const left = color.toVar()
-    if (this.#isElsewhere) return left
+    if (this.#isDrawnByForeground) return left
     If(this.#strength.greaterThan(0), () => {
       const lost = Fn(({ renderer }): Vec3 => this.#lostUpTo(this.#endIn(renderer, this.#place)))()
       // Clouds may also give light.
@@ -221,7 +224,7 @@ export class ScreenShafts implements ScreenShadows {
     const behind = transmittance.mul(this.#isForward.oneMinus()).toConst() as Float
     return {
       seenFrom: from => from.lessThan(distance).select(before, behind),
-      most: behind.greaterThan(OPAQUE).select(FAR, distance).toConst()
+      most: behind.greaterThan(MIN_TRANSMITTANCE).select(FAR, distance).toConst()
     }
   }
 
@@ -286,9 +289,9 @@ export class ScreenShafts implements ScreenShadows {
     return this.#color(light)
   }
 
-  /** Takes them out of the shafts of their camera. */
+  /** Takes them out of the shafts of their camera, until they are drawn again. */
   dispose(): void {
-    this.#shafts.forget(this)
+    this.#shafts.screens.delete(this)
     this.free()
   }
 

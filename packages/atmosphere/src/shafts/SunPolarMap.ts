@@ -44,6 +44,8 @@ export class SunPolarMap {
   }
   /** Greatest ρ of a shadow map [m]; 0 without maps. */
   readonly maximumRho = number()
+  /** Part of the light that the shadows take [–]. */
+  readonly intensity = number(1)
   #sources: ShadowMapNodes[] = []
   #isCompared = false
   #pass: FragmentPass | null = null
@@ -145,6 +147,7 @@ export class SunPolarMap {
     logScale.value = 1 / (last - first)
     logOffset.value = -first / (last - first)
     this.maximumRho.value = greatest
+    this.intensity.value = maps[0].intensity
   }
 
   /** Frees the map. */

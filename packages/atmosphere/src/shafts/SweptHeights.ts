@@ -1,21 +1,19 @@
-import { Matrix3, Vector3, type Matrix4, type RenderTarget } from 'three'
-import { Fn, step, texture, uv, vec2, vec4 } from 'three/tsl'
-import type { Renderer, TextureNode } from 'three/webgpu'
+import { Matrix3, Vector3, type Matrix4, type RenderTarget, type Texture } from 'three'
+import { Fn, texture, uv, vec4 } from 'three/tsl'
+import type { Renderer } from 'three/webgpu'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
-import { sampleLevel0, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import { sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
+import { isInField } from './SweptShadow'
 
 /** Part of a texel by which the light may turn, over the field's width, before the map is drawn anew. */
 const TURN = 0.25
 
 /** Greatest height that the map keeps, up or down; half floats hold a little more [m]. */
-const MOST = 6e4
+const MAX_HEIGHT = 6e4
 
 /** Least height over which shadows end [m]. */
 const LEAST_BLUR = 0.1
-
-/** Error of heights in half floats, over their size, after some sweeps. Less: high ground shades itself in bands. */
-const HALF_STEP = 2 ** -10
 
 const _toLight = new Vector3()
 const _linear = new Matrix3()
@@ -31,12 +29,11 @@ export interface SweptField {
 export class SweptHeights {
   readonly #field: SweptField
   readonly #targets: readonly [RenderTarget, RenderTarget]
-  readonly #shadow: TextureNode
   /** Step of a sweep [parts of the field], and how far light falls over it [m]. */
   readonly #step = vector2()
   readonly #fall = number()
   /** Height over which shadows end, below what casts them: light's fall over a texel [m]. */
-  readonly #blur = number(1)
+  blur = 1
   #passes: readonly FragmentPass[] = []
   /** Direction to the light, and version of the heights, that the map is of. */
   readonly #drawn = new Vector3(NaN, NaN, NaN)
@@ -47,7 +44,11 @@ export class SweptHeights {
     const target = (): RenderTarget =>
       tableTarget('Welkin.HeightFieldShadow', field.size, field.size)
     this.#targets = [target(), target()]
-    this.#shadow = texture(this.#targets[0].texture)
+  }
+
+  /** Heights up to which there is shadow, in red, and of the ground, in green [m]. */
+  get texture(): Texture {
+    return this.#targets[0].texture
   }
 
   /**
@@ -64,7 +65,7 @@ export class SweptHeights {
     along.z /= size
     const turned = Math.hypot(along.x - this.#drawn.x, along.y - this.#drawn.y) * size
     const sunk = Math.abs(along.z - this.#drawn.z) / Math.max(Math.abs(along.z), 1e-3)
-    this.#blur.value = Math.max(Math.abs(along.z), LEAST_BLUR)
+    this.blur = Math.max(Math.abs(along.z), LEAST_BLUR)
     if (version === this.#version && turned < TURN && sunk < 1 / size) return
     this.#drawn.copy(along)
     this.#version = version
@@ -75,7 +76,10 @@ export class SweptHeights {
   #draw(renderer: Renderer, toLight: Vector3): void {
     const { size, heightAt } = this.#field
     if (this.#passes.length === 0) {
-      const first = Fn(() => vec4(heightAt(uv() as unknown as Vec2).clamp(-MOST, MOST), 0, 0, 0))()
+      const first = Fn(() => {
+        const height = heightAt(uv() as unknown as Vec2).clamp(-MAX_HEIGHT, MAX_HEIGHT)
+        return vec4(height, height, 0, 0)
+      })()
       this.#passes = [first, this.#sweep(0), this.#sweep(1)].map(
         output => new FragmentPass('Welkin.HeightFieldShadow', output)
       )
@@ -88,7 +92,7 @@ export class SweptHeights {
       const [x, y] = [Math.round(toLight.x * far), Math.round(toLight.y * far)]
       const along = (x * toLight.x + y * toLight.y) / (toLight.x ** 2 + toLight.y ** 2)
       this.#step.value.set(x, y).divideScalar(size)
-      this.#fall.value = Math.min(Math.max(along * toLight.z, -MOST), MOST)
+      this.#fall.value = Math.min(Math.max(along * toLight.z, -MAX_HEIGHT), MAX_HEIGHT)
       this.#passes[1 + (i % 2)].render(renderer, this.#targets[1 - (i % 2)])
     }
   }
@@ -100,26 +104,10 @@ export class SweptHeights {
       const at = uv() as unknown as Vec2
       const next = at.add(this.#step).toConst() as Vec2
       const cast = (sampleLevel0(source, next).r as Float).sub(this.#fall)
-      const here = (sampleLevel0(source, at).r as Float).toConst()
+      const { r: here, g: ground } = sampleLevel0(source, at).toConst() as unknown as Vec4
       const higher = isInField(next).greaterThan(0.5).select(here.max(cast), here)
-      return vec4(higher.clamp(-MOST, MOST), 0, 0, 0)
+      return vec4(higher.clamp(-MAX_HEIGHT, MAX_HEIGHT), ground, 0, 0)
     })()
-  }
-
-  /**
-   * Part of the light that arrives at a place, in [0, 1].
-   *
-   * @param place - Place in the field, and height [m].
-   * @param raised - Height that is added to it, in that of shadows' edges.
-   */
-  transmittance(place: Vec3, raised = 0): Float {
-    const dark = (sampleLevel0(this.#shadow, place.xy).r as Float).toConst()
-    const lit = place.z
-      .sub(dark)
-      .div(dark.abs().mul(HALF_STEP).add(this.#blur))
-      .add(1 + raised)
-      .clamp()
-    return isInField(place.xy).lessThan(0.5).select(1, lit).toConst()
   }
 
   dispose(): void {
@@ -127,10 +115,4 @@ export class SweptHeights {
     this.#passes = []
     this.#version = -1
   }
-}
-
-/** 1 for places in [0, 1]², 0 for others. */
-function isInField(place: Vec2): Float {
-  const inside = step(0, place).mul(step(place, vec2(1))) as unknown as Vec2
-  return inside.x.mul(inside.y)
 }

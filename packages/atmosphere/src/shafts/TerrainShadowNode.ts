@@ -6,7 +6,7 @@ import { fail } from '@welkin/geo'
 import type { Float, Mat4 } from '../tsl-types'
 import { HeightFieldShadow } from './HeightFieldShadow'
 import type { ParallelLight } from './shadowMaps'
-import type { SweptHeights } from './SweptHeights'
+import { SweptShadow } from './SweptShadow'
 
 /** A light that comes from where it stands relative to its target, as three's `DirectionalLight`. */
 export type TargetedLight = ParallelLight & {
@@ -26,8 +26,8 @@ const _target = new Vector3()
  * Object.assign(sun.shadow, { shadowNode: terrainShadow(hills, sun, shadow(sun)) })
  * ```
  *
- * It falls on what has `receiveShadow`, the terrain too: what stands no deeper below the heights of the field than light
- * falls over one of its texels is lit. Light shafts of the same light read the same map.
+ * It falls on what has `receiveShadow`, the terrain too: ground that lies below the field, between its texels, is as lit as
+ * the field there. Light shafts of the same light read the same map.
  */
 export class TerrainShadowNode extends Node<'float'> {
   static get type(): string {
@@ -40,7 +40,7 @@ export class TerrainShadowNode extends Node<'float'> {
   readonly light: TargetedLight
   /** Another shadow node, to be multiplied with. */
   shadowNode: Node | null
-  #swept: SweptHeights | null = null
+  #swept: SweptShadow | null = null
   /** View space of the camera that renders [world units] to places and heights of the field. */
   readonly #toField = uniform(new Matrix4()).setGroup(renderGroup)
 
@@ -61,26 +61,23 @@ export class TerrainShadowNode extends Node<'float'> {
 
   override updateBefore({ renderer, camera }: NodeFrame): undefined {
     if (renderer === null || camera === null) return
-    this.hills.follow(_target.setFromMatrixPosition(camera.matrixWorld))
-    const toField = this.#toField.value.copy(this.hills.matrix).invert()
     const { matrixWorld, target } = this.light
     _toLight.setFromMatrixPosition(matrixWorld)
     _toLight.sub(_target.setFromMatrixPosition(target.matrixWorld)).normalize()
-    this.#swept?.update(renderer, _toLight, toField)
-    toField.multiply(camera.matrixWorld)
+    const toField = this.#swept?.update(renderer, camera, _toLight)
+    if (toField) this.#toField.value.multiplyMatrices(toField, camera.matrixWorld)
   }
 
   override setup(): Node {
     const place = (this.#toField as unknown as Mat4).mul(vec4(positionView, 1)).xyz.toConst()
-    this.#swept ??= this.hills.acquire(this.light)
-    // Raised, so that terrain between texels does not stand in its own shadow.
-    const passing = this.#swept.transmittance(place, 1)
+    this.#swept ??= new SweptShadow(this.hills, this.light)
+    const passing = this.#swept.transmittance(place, true)
     return this.shadowNode === null ? passing : passing.mul(this.shadowNode as Float)
   }
 
   /** Lets go of the map, which is freed if nothing else reads it. It can be used again. */
   override dispose(): void {
-    if (this.#swept !== null) this.hills.release(this.light)
+    this.#swept?.dispose()
     this.#swept = null
     super.dispose()
   }

@@ -1,8 +1,23 @@
-/**
- * Directions around the light that the shadow map tells apart, and distances from the line between it and the camera; pixels from one that is marched to the next, see {@link spacingIn};
- * groups of samples along a view ray, and samples in each; samples in fog. In materials: rays along the longer edge of the picture,
- * and samples in each slice of a ray; no rays where each fragment marches.
- */
+/** Fineness of light shafts. */
+interface Quality {
+  /** Directions around the light that the shadow map tells apart. */
+  readonly rows: number
+  /** Distances from the line between camera and light that it tells apart. */
+  readonly columns: number
+  /** Pixels of the post effect from one that is marched to the next, in large pictures: see {@link spacingIn}. */
+  readonly spacing: number
+  /** Groups of samples along a view ray: places at which the lit air is evaluated. */
+  readonly groups: number
+  /** Samples of the shadow in each group. */
+  readonly samples: number
+  /** Samples of the shadow in each medium, such as fog. */
+  readonly inFog: number
+  /** Rays of the volume for materials along the longer edge of the picture; 0 if each fragment marches. */
+  readonly rays: number
+  /** Samples of the shadow in each slice of such a ray. */
+  readonly sliceSamples: number
+}
+
 export const qualities = {
   low: {
     rows: 960,
@@ -12,7 +27,7 @@ export const qualities = {
     samples: 3,
     inFog: 12,
     rays: 128,
-    looks: 2
+    sliceSamples: 2
   },
   medium: {
     rows: 960,
@@ -22,7 +37,7 @@ export const qualities = {
     samples: 3,
     inFog: 14,
     rays: 144,
-    looks: 3
+    sliceSamples: 3
   },
   high: {
     rows: 1024,
@@ -32,7 +47,7 @@ export const qualities = {
     samples: 4,
     inFog: 16,
     rays: 144,
-    looks: 4
+    sliceSamples: 4
   },
   reference: {
     rows: 2048,
@@ -42,21 +57,23 @@ export const qualities = {
     samples: 8,
     inFog: 512,
     rays: 0,
-    looks: 0
+    sliceSamples: 0
   }
-} as const
+} as const satisfies Record<string, Quality>
 
-/** Fineness of the march of light shafts. */
+/** Fineness of the march of light shafts: `'reference'` has 512 samples a pixel, to compare others with, and takes tens of milliseconds. */
 export type LightShaftsQuality = keyof typeof qualities
 
-/** Longer edge of a picture that has a quality's spacing, as larger ones have [pixels]; and the least spacing of smaller ones. */
+/** Longer edge of pictures from which on they have a quality's spacing [pixels]. */
 const FULL_WIDTH = 1920
-const LEAST_SPACING = 3
+
+/** Least spacing of smaller pictures [pixels]. */
+const MIN_SPACING = 3
 
 /** Pixels of a picture from one that is marched to the next: fewer in small pictures, which cost less. */
 export const spacingIn = (spacing: number, width: number, height: number): number => {
   const scaled = Math.round((spacing * Math.max(width, height)) / FULL_WIDTH)
-  return Math.min(spacing, Math.max(scaled, LEAST_SPACING))
+  return Math.min(spacing, Math.max(scaled, MIN_SPACING))
 }
 
 /** Names of all qualities. */

@@ -15,10 +15,17 @@ export interface ShadowMap {
   readonly matrix: Matrix4
   /** Part of the texture that is its own: first and last coordinates. */
   readonly bounds: Vector4
+  /** Part of the light that its shadows take, in [0, 1]: `LightShadow.intensity` [–]. */
+  readonly intensity: number
 }
 
 /** A light's shadow of one map, or of several that share a texture, such as three's `SunLight` has. */
-type Shadow = LightShadow & { getMatrix?(index: number): Matrix4 }
+type Shadow = LightShadow & {
+  getMatrix?(index: number): Matrix4
+  readonly isDirectionalLightShadow?: boolean
+}
+
+type PlainShadowNode = ReturnType<typeof shadowNodeOf> & Pick<ShadowSlot, 'shadowMap'>
 
 /** A node in a shadow's slot: `CSMShadowNode`, which has a light for each cascade, or one around another. */
 interface ShadowSlot {
@@ -42,11 +49,29 @@ function slotsOf(shadow: LightShadow): ShadowSlot[] {
   return slots
 }
 
-/** Lets a node that {@link drawShadow} finds draw a plain shadow; not once three has made one. */
-export function claimShadow(light: ParallelLight): void {
-  const { shadow } = light as { shadow: Shadow & { shadowNode?: unknown } }
-  const isPlain = (shadow as { isDirectionalLightShadow?: boolean }).isDirectionalLightShadow
-  if (isPlain && !shadow.map) shadow.shadowNode ??= shadowNodeOf(light)
+/** Nodes that were put into the empty slots of shadows, and those who have use for them. */
+const claims = new WeakMap<LightShadow, { node: PlainShadowNode; users: Set<object> }>()
+
+/** Has a node that {@link drawShadow} finds draw a plain shadow, until it is released; not once three has made one. */
+export function claimShadow(light: ParallelLight, user: object): void {
+  const shadow = light.shadow as Shadow
+  let claim = claims.get(shadow)
+  if (shadow.map && shadow.map !== claim?.node.shadowMap) return
+  if (claim === undefined) {
+    if (!shadow.isDirectionalLightShadow || shadow.shadowNode) return
+    claim = { node: shadowNodeOf(light) as PlainShadowNode, users: new Set() }
+    claims.set(shadow, claim)
+  }
+  claim.users.add(user)
+  shadow.shadowNode ??= claim.node
+}
+
+/** Empties the slot of a shadow again, once nobody has use for the node in it. */
+export function releaseShadow(light: ParallelLight, user: object): void {
+  const shadow = light.shadow as Shadow
+  const claim = claims.get(shadow)
+  if (!claim?.users.delete(user) || claim.users.size > 0) return
+  if (shadow.shadowNode === claim.node) delete shadow.shadowNode
 }
 
 /**
@@ -78,7 +103,8 @@ function mapsOf(shadow: Shadow): ShadowMap[] {
   return Array.from({ length: shadow.getViewportCount() }, (_, i) => {
     const { x, y, z, w } = shadow.getViewport(i)
     const bounds = new Vector4(x / width, y / height, (x + z) / width, (y + w) / height)
-    return { depth, matrix: shadow.getMatrix?.(i) ?? shadow.matrix, bounds }
+    const { intensity } = shadow
+    return { depth, matrix: shadow.getMatrix?.(i) ?? shadow.matrix, bounds, intensity }
   })
 }
 

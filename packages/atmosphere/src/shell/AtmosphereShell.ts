@@ -158,8 +158,10 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     checkOptions(where, options, 'model', 'tables', 'shafts', ...SETTINGS)
     const { model = 'tables', tables, shafts, ...settings } = options
     checkChoice(where, 'model', model, ['tables', 'single-scattering'])
-    if (shafts && (model !== 'tables' || shafts.atmosphere?.parameters !== parameters))
-      fail(where, 'shafts must be LightShafts of these parameters, for tables', shafts)
+    const lit = shafts?.atmosphere
+    const fits = model === 'tables' && lit?.parameters === parameters && shafts?.source === lit.sun
+    if (shafts && !fits)
+      fail(where, 'shafts must be LightShafts of the sun, of these parameters, for tables', shafts)
     super(
       circumscribedSphere((bodyRadius * parameters.topRadius) / parameters.bottomRadius),
       shellMaterial()
@@ -167,7 +169,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     this.parameters = parameters
     this.bodyRadius = bodyRadius
     this.#shafts = shafts
-    this.set({ sun: shafts?.atmosphere, ...settings })
+    this.set({ sun: lit, ...settings })
     this.name = 'AtmosphereShell'
     this.renderOrder = 1
     this.visible = !parameters.isAirless
@@ -302,7 +304,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     if (this.#volumes !== null && this.#tables !== null) {
       this.#updateVolume(renderer, camera, this.#volumes, this.#tables.version)
     }
-    if (frame) this.#shadows?.drawIn(frame, this.sun, this.#isMarched.value > 0)
+    if (frame) this.#shadows?.prepareMesh(frame, this.sun, this.#isMarched.value > 0)
   }
 
   #updateSun(): void {

@@ -4,6 +4,7 @@ import type { Node, NodeBuilder, NodeFrame, PassNode } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import {
   checkAirOptions,
+  shaftsIn,
   type AirOptions,
   type AirShadows,
   type ScreenShadows
@@ -49,13 +50,16 @@ export class AerialPerspectiveNode extends PostEffectNode {
   readonly showSky: boolean
   /** See {@link AirOptions}. */
   readonly showSun: boolean
-  /** Shadows in the air, or null; shared, not owned. */
-  readonly shafts: AirShadows | null
-  readonly #screenShafts: ScreenShadows | undefined
+  /** Shadows in the air, by lights; shared, not owned. */
+  readonly shafts: readonly AirShadows[]
+  readonly #screenShafts: readonly ScreenShadows[]
   readonly #rays: DepthRays
   readonly #backdrop = new Backdrop()
 
-  /** @throws If an argument is missing or of the wrong kind, or an option is unknown or of the wrong kind. */
+  /**
+   * @throws If an argument is missing or of the wrong kind, an option is unknown or of the wrong kind, or shafts are of
+   *   another camera or atmosphere.
+   */
   constructor(
     colorNode: Node,
     depthNode: Node,
@@ -65,19 +69,19 @@ export class AerialPerspectiveNode extends PostEffectNode {
   ) {
     super(colorNode, depthNode, camera, atmosphere)
     checkAirOptions('AerialPerspectiveNode', options)
-    const { shafts = null, showSky = true, showSun = true } = options
-    this.shafts = shafts
+    const { shafts, showSky = true, showSun = true } = options
+    this.shafts = shaftsIn(shafts)
     this.showSky = showSky
     this.showSun = showSun
     this.#rays = new DepthRays(depthNode, camera)
-    this.#screenShafts = shafts?.upTo(depthNode)
+    this.#screenShafts = this.shafts.map(each => each.upTo(depthNode, undefined, this))
   }
 
   /** Layers of the sky, and shafts for all pixels at once in place of those that materials have. */
   protected override get layers(): readonly SkyLayer[] {
-    const { layers } = this.atmosphere
-    if (this.#screenShafts === undefined) return layers
-    return [...layers.filter(layer => layer !== this.shafts), this.#screenShafts]
+    const inMaterials = this.shafts as readonly SkyLayer[]
+    const layers = this.atmosphere.layers.filter(layer => !inMaterials.includes(layer))
+    return [...layers, ...this.#screenShafts]
   }
 
   override customCacheKey(): number {
@@ -103,7 +107,7 @@ export class AerialPerspectiveNode extends PostEffectNode {
   }
 
   override dispose(): void {
-    this.#screenShafts?.dispose?.()
+    for (const each of this.#screenShafts) each.dispose?.()
     super.dispose()
   }
 
@@ -126,8 +130,11 @@ export class AerialPerspectiveNode extends PostEffectNode {
       const ray = isOrthographic ? (vec3(0, 0, -1) as unknown as Vec3) : middle
       // Derivatives belong outside of branches; GLSL does not take that of a constant.
       const pixel = isOrthographic ? (float(0) as Float) : pixelAngle(ray.normalize())
-      const drawnAt = this.#screenShafts ? position(depth).toConst() : null
-      const lost = this.#screenShafts?.lostAt(isSky.select(ray, drawnAt).toConst(), isSky)
+      const shafts = this.#screenShafts
+      const drawnAt = shafts.length > 0 ? position(depth).toConst() : null
+      const lost = shafts
+        .flatMap(each => each.lostAt(isSky.select(ray, drawnAt).toConst(), isSky) ?? [])
+        .reduce<Vec3 | undefined>((sum, more) => sum?.add(more) ?? more, undefined)
       If(ifSeen(isSky.not()), () => {
         const air = aerialPerspectiveTo(this.view, drawnAt ?? position(depth), this.layers, lost)
         result.assign(light.mul(air.transmittance).add(air.inScatter.mul(coverage)))

@@ -1,9 +1,11 @@
+import type { Camera } from 'three'
 import type { Node, NodeFrame, NodeMaterial, Renderer } from 'three/webgpu'
 import { checkBoolean, checkOptions, fail } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import type { scatterSegment } from '../scattering/tsl/segment'
 import type { Bool, Float, Vec2, Vec3 } from '../tsl-types'
 import type { AtmosphereView } from './AtmosphereView'
+import type { LightSource } from './LightSource'
 import type { SkyLayer } from './SkyLayer'
 
 /** Something in front of what the depth of a picture has, such as clouds, that is drawn over the air. */
@@ -40,13 +42,21 @@ export interface ScreenShadows extends SkyLayer {
    *
    * @param isMarched - True if it marches its air itself, by {@link scatterAlong}; else it reads {@link dim}.
    */
-  drawIn(frame: NodeFrame, sun: object, isMarched: boolean): void
+  prepareMesh(frame: NodeFrame, sun: object, isMarched: boolean): void
   /**
    * Light scattered between two places of the fragment's ray, which need not start at the camera, in these shadows.
    *
    * @param entry - Distance on the ray from which those of its places are [m].
    */
   scatterAlong(entry: Float): typeof scatterSegment
+}
+
+/** A node that draws the air of a camera's picture. */
+export interface AirPicture {
+  /** Name of its class, for errors. */
+  readonly type: string
+  readonly camera: Camera
+  readonly atmosphere: Atmosphere
 }
 
 /**
@@ -56,25 +66,33 @@ export interface ScreenShadows extends SkyLayer {
 export interface AirShadows extends Pick<SkyLayer, 'prepare' | 'update' | 'medium'> {
   /** Atmosphere whose air it is. */
   readonly atmosphere: Atmosphere
+  /** Source of the light. */
+  readonly source: LightSource
   /**
    * Layer for a post effect, computed once for its pixels and not by every material.
    *
    * @param depthNode - Depth of the scene, as the renderer writes it; null for a mesh of air: all of each ray, to the planet
    *   or out of the air.
    * @param foreground - Drawn over the air, by a node that then draws these shadows instead of all others: by `dim`.
+   * @param picture - The node that draws them, to be checked.
+   * @throws If the picture is another camera's or another atmosphere's, which would have no shadows.
    */
-  upTo(depthNode: Node | null, foreground?: ForegroundLayer): ScreenShadows
+  upTo(depthNode: Node | null, foreground?: ForegroundLayer, picture?: AirPicture): ScreenShadows
 }
 
 /** Options of nodes that draw air. */
 export interface AirOptions {
-  /** Shadows in the air; by default none. */
-  shafts?: AirShadows
+  /** Shadows in the air, of one light or of several, such as sun and moon; by default none. */
+  shafts?: AirShadows | readonly AirShadows[]
   /** Draws the sky where nothing was drawn; by default true. */
   showSky?: boolean
   /** Draws the sun's disc in that sky; by default true. */
   showSun?: boolean
 }
+
+/** Shadows of an option, in a list. */
+export const shaftsIn = (shafts: AirOptions['shafts'] = []): readonly AirShadows[] =>
+  [shafts].flat() as AirShadows[]
 
 /** @throws If an option is unknown or of the wrong kind. */
 export function checkAirOptions(where: string, options: AirOptions): void {
@@ -83,7 +101,9 @@ export function checkAirOptions(where: string, options: AirOptions): void {
     showSky = true,
     showSun = true
   } = checkOptions(where, options, 'shafts', 'showSky', 'showSun')
-  if (shafts !== undefined && !shafts?.upTo) fail(where, 'shafts must be LightShafts', shafts)
+  for (const each of shaftsIn(shafts)) {
+    if (!each?.upTo) fail(where, 'shafts must be LightShafts', each)
+  }
   checkBoolean(where, 'showSky', showSky)
   checkBoolean(where, 'showSun', showSun)
 }

@@ -1,4 +1,4 @@
-import { DataUtils, Matrix4, Vector3 } from 'three'
+import { DataUtils, Matrix4, PerspectiveCamera, Vector3 } from 'three'
 import { expect, it } from 'vitest'
 import { Atmosphere, groundShadow, type GroundShadow } from '@welkin/atmosphere'
 
@@ -89,6 +89,65 @@ it('stays over the ground when the origin, the axes and the units of the world c
   shadow.follow(new Vector3(0, 0.2, 0))
   expect(shadow.version).toBe(version)
   expect(error()).toBeLessThan(3)
+  shadow.dispose()
+})
+
+/** A camera above a place. */
+function cameraAbove(longitude: number, latitude: number): PerspectiveCamera {
+  const camera = new PerspectiveCamera()
+  camera.position.copy(above(longitude, latitude))
+  camera.updateMatrixWorld()
+  return camera
+}
+
+/** Moves a camera above a place. */
+function move(camera: PerspectiveCamera, longitude: number, latitude: number): void {
+  camera.position.copy(above(longitude, latitude))
+  camera.updateMatrixWorld()
+}
+
+it('has heights about each of two cameras far apart, which stay', () => {
+  const shadow = groundShadow(atmosphere, ground, { width: WIDTH, texels: TEXELS })
+  const cameras = [cameraAbove(1, 47), cameraAbove(4, 47)]
+  const fields = cameras.map(camera => shadow.fieldOf(camera))
+  expect(fields[0]).not.toBe(fields[1])
+  asked = 0
+  for (let frame = 0; frame < 3 * TEXELS; frame++) {
+    cameras.forEach((camera, i) => expect(shadow.fieldOf(camera)).toBe(fields[i]))
+  }
+  expect(asked).toBe(0)
+  fields.forEach((field, i) => {
+    expect(field.version).toBe(1)
+    expect(worstError(field, field.heights.image.data as Uint16Array)).toBeLessThan(3)
+    const { longitude } = ellipsoid.ecefToGeodetic(
+      new Vector3(0.5, 0.5, 0).applyMatrix4(field.matrix)
+    )
+    expect(longitude).toBeCloseTo([1, 4][i], 6)
+  })
+  shadow.refresh()
+  cameras.forEach(camera => shadow.fieldOf(camera))
+  expect(fields.map(({ version }) => version)).toEqual([2, 2])
+  shadow.dispose()
+})
+
+it('has cameras nearby share a square, which goes on with one of them when the other is gone', () => {
+  const shadow = groundShadow(atmosphere, ground, { width: WIDTH, texels: TEXELS })
+  const [gone, camera] = [cameraAbove(1, 47), cameraAbove(1.02, 47)]
+  expect(shadow.fieldOf(gone)).toBe(shadow)
+  for (let frame = 0; frame < 70; frame++) expect(shadow.fieldOf(camera)).toBe(shadow)
+  move(camera, 1.4, 47)
+  asked = 0
+  expect(shadow.fieldOf(camera)).toBe(shadow)
+  expect(asked).toBe(2 * TEXELS)
+  shadow.dispose()
+})
+
+it('has no more than four squares, of which the oldest takes up another camera', () => {
+  const shadow = groundShadow(atmosphere, ground, { width: WIDTH, texels: TEXELS })
+  const fields = [0, 3, 6, 9].map(longitude => shadow.fieldOf(cameraAbove(longitude, 47)))
+  expect(new Set(fields).size).toBe(4)
+  expect(shadow.fieldOf(cameraAbove(12, 47))).toBe(fields[0])
+  expect(shadow.fieldOf(cameraAbove(15, 47))).toBe(fields[1])
   shadow.dispose()
 })
 

@@ -5,12 +5,14 @@ import { describe, expect, it, vi } from 'vitest'
 import {
   aerialPerspective,
   Atmosphere,
+  AtmosphereShell,
   distanceFog,
   heightFieldShadow,
   heightFog,
   terrainShadow,
   lightShafts,
   moon,
+  MoonDirectionalLight,
   SunDirectionalLight
 } from '@welkin/atmosphere'
 import type { AirOccluder } from '@welkin/atmosphere'
@@ -24,6 +26,16 @@ const light = new SunDirectionalLight(atmosphere)
 
 /** Value of a type that the compiler would not let pass. */
 const wrong = (value: unknown): never => value as never
+
+/** Draws shafts of a picture as far as they can be without a renderer. */
+function drawAgain(screen: ScreenShafts): void {
+  const draw = screen.foreground === undefined ? 'prepare' : 'prepareShadows'
+  try {
+    screen[draw](wrong({}), wrong({}))
+  } catch {
+    // There is no renderer.
+  }
+}
 
 /** An occluder that takes nothing. */
 const occluder: AirOccluder = { castInto: () => ({ transmittance: () => () => float(1) }) }
@@ -111,6 +123,48 @@ describe('bad input to light shafts', () => {
       () => terrainShadow(heightFieldShadow(new Texture(), new Matrix4()), wrong(new PointLight()))
     ],
     [
+      'HeightFieldShadow: matrix must have an inverse, got a Matrix4',
+      () => heightFieldShadow(new Texture(), new Matrix4().makeScale(1e4, 1e4, 0))
+    ],
+    [
+      'HeightFieldShadow: matrix must have an inverse, got a Matrix4',
+      () =>
+        heightFieldShadow(
+          new Texture(),
+          new Matrix4().set(1, 2, 0, 0, 3, 6, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)
+        )
+    ],
+    [
+      'AerialPerspectiveNode: shafts must be of the same camera, got a PerspectiveCamera',
+      () =>
+        aerialPerspective(vec4(1), vec4(1), camera.clone(), atmosphere, {
+          shafts: lightShafts(atmosphere, camera, light)
+        })
+    ],
+    [
+      'AerialPerspectiveNode: shafts must be of the same atmosphere, got an Atmosphere',
+      () =>
+        aerialPerspective(vec4(1), vec4(1), camera, new Atmosphere(), {
+          shafts: lightShafts(atmosphere, camera, light)
+        })
+    ],
+    [
+      'AerialPerspectiveNode: shafts must be LightShafts, got undefined',
+      () => aerialPerspective(vec4(1), vec4(1), camera, atmosphere, { shafts: [wrong(undefined)] })
+    ],
+    [
+      'AtmosphereShell: shafts must be LightShafts of the sun, of these parameters, for tables, got a LightShafts',
+      () => {
+        const moonlit = new Atmosphere()
+        const luna = moon()
+        moonlit.add(luna)
+        const moonlight = new MoonDirectionalLight(moonlit, luna)
+        return new AtmosphereShell(moonlit.parameters, 1, {
+          shafts: lightShafts(moonlit, camera, moonlight)
+        })
+      }
+    ],
+    [
       'LightShafts: atmosphere must be that of its layers, got an Atmosphere',
       () => new Atmosphere().add(lightShafts(atmosphere, camera, light))
     ]
@@ -123,7 +177,7 @@ describe('bad input to light shafts', () => {
     const shafts = lightShafts(atmosphere, camera, light, { strength: 0.5 })
     expect(() => shafts.set({ strength: 2, quality: wrong('best') })).toThrow('quality')
     expect(shafts.strength).toBe(0.5)
-    expect(shafts.quality).toBe('high')
+    expect(shafts.quality).toBe('medium')
   })
 })
 
@@ -161,13 +215,13 @@ describe('what is added to light shafts', () => {
     expect(freed).toBe(3)
     shafts.dispose()
     expect(freed).toBe(3)
-    expect(shafts.hasForeground).toBe(false)
+    expect(shafts.screens.hasForeground).toBe(false)
     expect(drawn).toBe(0)
     const kept = shafts.upTo(float(1), foreground) as ScreenShafts
     kept.grid.target.addEventListener('dispose', () => freed++)
     shafts.dispose()
     expect(freed).toBe(4)
-    expect(shafts.hasForeground).toBe(true)
+    expect(shafts.screens.hasForeground).toBe(true)
 
     const layered = new Atmosphere()
     const post = lightShafts(layered, camera, new SunDirectionalLight(layered))
@@ -176,6 +230,15 @@ describe('what is added to light shafts', () => {
     expect(post.isForward).toBe(false)
     node.dispose()
     expect(post.isForward).toBe(true)
+    // Drawn again after a dispose, it has them again, as a foreground has.
+    for (const foreground of [undefined, { isDrawn: true } as never]) {
+      const screen = post.upTo(float(1), foreground) as ScreenShafts
+      screen.dispose()
+      expect([...post.screens]).not.toContain(screen)
+      drawAgain(screen)
+      expect([...post.screens]).toContain(screen)
+      screen.dispose()
+    }
     post.upTo(null)
     expect(post.isForward, 'with a mesh of air besides').toBe(true)
   })
@@ -225,6 +288,10 @@ describe('what is added to light shafts', () => {
   })
 })
 
+/** The node in the slot of a light's shadow. */
+const slotOf = ({ shadow }: DirectionalLight): object | undefined =>
+  (shadow as { shadowNode?: object }).shadowNode
+
 describe('shadow maps of a light', () => {
   it('are none before three has drawn one, or where the light casts no shadow', () => {
     const plain = new DirectionalLight()
@@ -237,10 +304,37 @@ describe('shadow maps of a light', () => {
     const [plain, own] = [new DirectionalLight(), new DirectionalLight()]
     const node = {}
     Object.assign(own.shadow, { shadowNode: node })
-    claimShadow(plain)
-    claimShadow(own)
-    expect((plain.shadow as { shadowNode?: object }).shadowNode).toBeDefined()
-    expect((own.shadow as { shadowNode?: object }).shadowNode).toBe(node)
+    claimShadow(plain, camera)
+    claimShadow(own, camera)
+    expect(slotOf(plain)).toBeDefined()
+    expect(slotOf(own)).toBe(node)
+  })
+
+  it('have their slot as it was, once all shafts of the light are disposed of', () => {
+    const plain = new DirectionalLight()
+    const [first, second] = [0, 1].map(() =>
+      lightShafts(atmosphere, new PerspectiveCamera(), plain)
+    )
+    const node = slotOf(plain)
+    first.dispose()
+    expect(slotOf(plain)).toBe(node)
+    second.dispose()
+    expect('shadowNode' in plain.shadow).toBe(false)
+
+    // Used again, it has the node that three knows; another in its place is left alone.
+    claimShadow(plain, first)
+    expect(slotOf(plain)).toBe(node)
+    const other = {}
+    Object.assign(plain.shadow, { shadowNode: other })
+    first.dispose()
+    expect(slotOf(plain)).toBe(other)
+  })
+
+  it('are left to three where it has drawn them by itself', () => {
+    const plain = new DirectionalLight()
+    plain.shadow.map = {} as never
+    claimShadow(plain, camera)
+    expect(slotOf(plain)).toBeUndefined()
   })
 })
 

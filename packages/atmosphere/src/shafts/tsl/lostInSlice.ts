@@ -21,7 +21,7 @@ export interface Slice {
  * Light that shadows keep from a slice of a view ray, for unit irradiance of the source [1/sr]: as `lostLight` has it, of
  * one group of samples.
  *
- * @param samples - Look-ups of the shadow.
+ * @param samples - Samples of the shadow.
  * @param jitter - Place of samples in their steps, in (0, 1).
  * @returns Light, and where the dark part begins and ends [m].
  */
@@ -55,8 +55,8 @@ export function lostInSlice(
     const media = mediaTo(to)
     const past = dimmedBy(media)
     const sums = vec4(0).toVar()
-    loop('look', int(samples), look => {
-      const part = float(look).add(jitter).div(samples).toConst()
+    loop('sliceSample', int(samples), index => {
+      const part = float(index).add(jitter).div(samples).toConst()
       const distance = from.add(length.mul(part)).toConst() as Float
       const here = darkAt(distance, distance.lessThan(mapped))
       sums.addAssign(vec4(1, part, part.mul(part), 0).mul(here))

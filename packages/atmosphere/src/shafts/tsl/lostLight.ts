@@ -18,9 +18,9 @@ import { warpedSteps, type WarpedSteps } from './warpedSteps'
 export interface ShaftSteps {
   /** Places at which the lit air is evaluated, if they are in shadow. */
   readonly groups: Float
-  /** Look-ups of the shadow for each. */
+  /** Samples of the shadow for each. */
   readonly samples: Float
-  /** Look-ups in each medium, such as fog. Fewer than 8: grain before dark fog (`'low'` quality, *Towers in haze*). */
+  /** Samples in each medium, such as fog. Fewer than 8: grain before dark fog (`'low'` quality, *Towers in haze*). */
   readonly inFog: Float
 }
 
@@ -54,7 +54,7 @@ interface March {
  * ∫ σ_s p(ν) T_light T_view (1 − V) over the ray, where V is the part of the light that occluders let through. Besides
  * {@link lostDiffuse}, if there are occluders that dim diffuse light, and {@link lostInMedia} such as fog.
  *
- * The ray is cut into groups of samples, spaced so that each holds about the same light. In each the look-ups
+ * The ray is cut into groups of samples, spaced so that each holds about the same light. In each the samples
  * give the dark part and its centre; there the light is evaluated once, which is exact where it varies linearly.
  * Where there are shadows beyond the map, the ray goes on there with about as many samples again.
  *
@@ -164,8 +164,8 @@ function lostInGroup(
   const dark = float(0).toVar()
   const sum = float(0).toVar()
   const perSample = width.div(groups.mul(samples)).toConst() as Float
-  loop('look', int(samples), look => {
-    const position = float(look).add(jitter).mul(perSample).add(start).toConst() as Float
+  loop('groupSample', int(samples), index => {
+    const position = float(index).add(jitter).mul(perSample).add(start).toConst() as Float
     const here = darkAt(position, isMapped).toConst() as Float
     dark.addAssign(here)
     sum.addAssign(position.mul(here))

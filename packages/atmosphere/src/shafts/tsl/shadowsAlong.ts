@@ -15,6 +15,8 @@ export interface ShadowedAir {
   readonly frame: PolarFrame
   /** Greatest ρ at which the map may have shadows [m]. */
   readonly maximumRho: Float
+  /** Part of the light that shadows in the map take [–]. */
+  readonly intensity: Float
   /** Shadows of clouds and the like. */
   readonly shadows: readonly Pick<AirShadow, 'transmittance' | 'diffuse'>[]
   /** Media that a ray passes, besides the air, from far layers to near ones. */
@@ -55,7 +57,7 @@ export interface Shadows {
  */
 export function shadowsAlong(
   view: ViewUniforms,
-  { map, frame, shadows, toWorld }: ShadowedAir,
+  { map, frame, intensity, shadows, toWorld }: ShadowedAir,
   { direction, seenFrom, receiver }: Pick<ShaftRay, 'direction' | 'seenFrom' | 'receiver'>,
   polar: () => PolarRay,
   jitter: Float,
@@ -76,7 +78,7 @@ export function shadowsAlong(
     darkAt(distance, isMapped) {
       const dark = float(0).toVar() as Float
       const addMap = (): void => {
-        dark.assign(readMap(map, frame, polar(), distance, jitter))
+        dark.assign(readMap(map, frame, polar(), distance, jitter).mul(intensity))
       }
       if (isMapped === true) addMap()
       else if (isMapped !== false) If(isMapped, addMap)

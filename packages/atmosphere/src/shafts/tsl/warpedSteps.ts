@@ -2,9 +2,11 @@ import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import type { Ray } from '../../scattering/tsl/ray'
 import type { Float } from '../../tsl-types'
 
-/** 1/L of a level ray, and what the slope of a ray adds to it, in heights of the homogeneous atmosphere. */
-const LEVEL = 0.133
-const STEEP = 1.33
+/** 1/L of a level ray [1/height of the homogeneous atmosphere]. */
+const LEVEL_RATE = 0.133
+
+/** Growth of 1/L with the sine of the ray's slope where air is densest [1/height of the homogeneous atmosphere]. */
+const SLOPE_RATE = 1.33
 
 /** Positions of samples along a ray, by a part in [0, 1] of all of them. */
 export interface WarpedSteps {
@@ -33,7 +35,7 @@ export function warpedSteps(
   const radial = radius.mul(cosView).toConst()
   const densest = radial.negate().clamp(0, length).toConst() as Float
   const steepness = radial.add(densest).abs().div(radius)
-  const scale = homogeneousHeight.div(steepness.mul(STEEP).add(LEVEL)).toConst() as Float
+  const scale = homogeneousHeight.div(steepness.mul(SLOPE_RATE).add(LEVEL_RATE)).toConst() as Float
   const warp = (distance: Float): Float => {
     const from = distance.sub(densest).toConst()
     return from.div(from.abs().add(scale))

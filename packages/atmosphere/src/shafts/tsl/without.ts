@@ -7,7 +7,7 @@ import { SKY_DISTANCE, type LayerRay } from '../../view/SkyLayer'
 export const FAR = 1e10
 
 /** A medium less light that it loses, and no less than none, where shafts are on. */
-export function without(
+export function withoutLost(
   { radiance, depth }: MediumSegment,
   strength: Float,
   lost: () => Vec4
