@@ -9,7 +9,7 @@ import { cloudExtinction as extinctionTwin } from '../../../packages/clouds/test
 import { extinctionOf, fallenRank, rateOf } from '../../../packages/clouds/test/twins/precipitation'
 import { layerAt } from '../../../packages/clouds/src/density/tsl/layer'
 import { fallForm } from '../../../packages/clouds/src/precipitation/fallForm'
-import { fallenFrom, fallExtinction } from '../../../packages/clouds/src/precipitation/tsl/fall'
+import { fallenFrom, fallExtinctions } from '../../../packages/clouds/src/precipitation/tsl/fall'
 import { NoiseTextures } from '../../../packages/clouds/test/twins/noiseTextures'
 import { NOISE_SIZE, type NoiseName } from '../../../packages/clouds/src/noise/noiseSizes'
 import { cloudExtinction, verticalOpticalDepth } from '../harness/cloud-extinction'
@@ -207,7 +207,7 @@ function rainDepth(
     const offset = start.add(up.mul(height.sub(altitude))).toConst()
     const sample = { offset, altitude: height, up, distance: place.w }
     const { rate, snow, hail } = fallenFrom(field, undefined, layer, falls, sample)
-    depth.addAssign(fallExtinction(rate, snow, hail).mul(RAIN_DEPTH / COLUMN_STEPS))
+    depth.addAssign(fallExtinctions(rate, snow, hail).x.mul(RAIN_DEPTH / COLUMN_STEPS))
   })
   return depth
 }

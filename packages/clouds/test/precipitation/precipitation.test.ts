@@ -71,8 +71,8 @@ describe('precipitation', () => {
     expect(mean).toBeCloseTo(12, 3)
   })
 
-  it('has the same rate with streaks of any contrast, sharp or blurred, but for what is cut off', () => {
-    for (const amount of [0, 0.5, 1, 2])
+  it('has the same rate with streaks of any contrast, sharp or blurred', () => {
+    for (const amount of [0, 0.5, 1, 1.5, 2, 3])
       for (const lost of [0, 0.4, 1]) {
         // Billows have a normal distribution, near enough.
         let [mean, weights] = [0, 0]
@@ -81,8 +81,7 @@ describe('precipitation', () => {
           mean += weight * streakOf(z, amount, lost)
           weights += weight
         }
-        expect(mean / weights).toBeLessThanOrEqual(1.0001)
-        expect(mean / weights).toBeGreaterThan(amount > 1 ? 0.85 : 0.99)
+        expect(Math.abs(mean / weights - 1)).toBeLessThan(0.01)
       }
     expect(streakOf(1, 2, 0) / streakOf(-1, 2, 0)).toBeGreaterThan(8)
     expect(streakOf(3, 0, 0)).toBe(1)
@@ -97,7 +96,7 @@ describe('precipitation', () => {
     expect(lagOf(10, 500, 1000, 3000)).toBeCloseTo(whole / 4 / rainSpeed, 3)
   })
 
-  it('leaves nothing below its floor, of streaks four times as strong as the strongest column', () => {
+  it('leaves nothing below its floor, of the strongest streaks under the strongest column', () => {
     expect(fallFloor(2000, 0)).toBe(-Infinity)
     fc.assert(
       fc.property(rates, fc.double({ min: 50, max: 5000, noNaN: true }), (rate, virgaDepth) => {

@@ -1,5 +1,5 @@
 import { MathUtils, Vector3 } from 'three'
-import { extinctionForm, fallForm, STRONGEST } from '../../src/precipitation/fallForm'
+import { extinctionForm, fallForm, streakBound, STRONGEST } from '../../src/precipitation/fallForm'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
 import { dry } from '../../src/layers/precipitation'
 import { windAxis } from '../../src/layers/wind'
@@ -79,15 +79,19 @@ export function rateOf(rate: number, rank: number, depth: number, virgaDepth: nu
 }
 
 /**
- * Rate of a streak over that of its column: the normal distribution of logarithms with mean 1.
+ * Rate of a streak over that of its column: the normal distribution of logarithms, cut off, with mean 1.
  *
  * @param deviations - Noise that blur has left, over its deviation.
  */
 export function streakOf(deviations: number, amount: number, lost: number): number {
   const { coarseStreaks, fineStreaks } = fallForm
   const deviation = Math.hypot(coarseStreaks, fineStreaks) * amount * (1 - lost)
-  const median = Math.exp(-(deviation ** 2) / 2)
-  return Math.min(median * Math.exp(deviation * deviations), STRONGEST)
+  const { from, factor } = streakBound
+  const least = Math.min(deviation, from)
+  const above = deviation - least
+  // (least + above)² / 2, of which a part is made up for.
+  const lowered = least ** 2 / 2 + least * above + (0.5 - factor) * above ** 2
+  return Math.min(Math.exp(deviation * deviations - lowered), STRONGEST)
 }
 
 /**

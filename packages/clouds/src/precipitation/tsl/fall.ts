@@ -1,4 +1,4 @@
-import { Fn, If, float, mix, smoothstep, vec2 } from 'three/tsl'
+import { Fn, If, float, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import { billows, levelOf } from '../../density/tsl/billows'
 import type { LayerNodes } from '../../density/tsl/layer'
@@ -8,7 +8,7 @@ import { strengthForm } from '../../density/formConstants'
 import type { WeatherMap } from '../../density/WeatherMap'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
 import { layout, type Float, type Variable, type Vec2, type Vec3 } from '../../tsl-types'
-import { extinctionForm, fallForm, STRONGEST } from '../fallForm'
+import { extinctionForm, fallForm, streakBound, STRONGEST } from '../fallForm'
 import { fallColumn, type FallNodes } from './fallColumn'
 
 /** Precipitation at a place. */
@@ -57,8 +57,12 @@ export const fallRate = /*#__PURE__*/ Fn(
       .mul(streak)
       .mul(rate)
       .mul(core + 1)
-    const left = falling.pow(b).sub(rate.pow(b).mul(depth)).max(0)
-    return depth.greaterThan(0).select(left.pow(1 / b), falling)
+      .toVar() as Variable<Float>
+    If(depth.greaterThan(0), () => {
+      const left = falling.pow(b).sub(rate.pow(b).mul(depth)).max(0)
+      falling.assign(left.pow(1 / b))
+    })
+    return falling
   },
   layout('precipitationRate', 'float', {
     rate: 'float',
@@ -68,12 +72,12 @@ export const fallRate = /*#__PURE__*/ Fn(
   })
 )
 
-/** Variance of the streaks' noise near by. */
-const STREAK_VARIANCE = fallForm.coarseStreaks ** 2 + fallForm.fineStreaks ** 2
+/** Deviation of the streaks' noise near by. */
+const STREAK_DEVIATION = Math.hypot(fallForm.coarseStreaks, fallForm.fineStreaks)
 
 /**
- * Rate of a streak over that of its column: of a normal distribution of logarithms, as rates of rain have, with mean 1. Twin:
- * test/twins/precipitation.ts
+ * Rate of a streak over that of its column: of a normal distribution of logarithms, as rates of rain have, cut off at `STRONGEST`, with
+ * mean 1. Twin: test/twins/precipitation.ts
  *
  * @param noise - Sum of billows, whose variance is that of `fallForm` where none are lost.
  * @param amount - Factor of the noise.
@@ -82,24 +86,29 @@ const STREAK_VARIANCE = fallForm.coarseStreaks ** 2 + fallForm.fineStreaks ** 2
  */
 export const fallStreak = /*#__PURE__*/ Fn(
   ([noise, amount, lost]: [Float, Float, Float]) => {
-    const deviation = amount.mul(lost.oneMinus()).toConst()
-    const mean = deviation.mul(deviation).mul(STREAK_VARIANCE / 2)
-    return noise.mul(amount).sub(mean).exp().min(STRONGEST)
+    const deviation = amount.mul(lost.oneMinus()).mul(STREAK_DEVIATION).toConst()
+    const { from, factor } = streakBound
+    const cut = deviation.sub(from).max(0).toConst()
+    const median = cut.mul(cut).mul(factor).sub(deviation.mul(deviation).div(2))
+    return noise.mul(amount).add(median).exp().min(STRONGEST)
   },
   layout('precipitationStreak', 'float', { noise: 'float', amount: 'float', lost: 'float' })
 )
 
-/** Extinction [1/m]: `extinctionForm`. Twin: test/twins/precipitation.ts */
-export const fallExtinction = /*#__PURE__*/ Fn(
+/**
+ * Extinction [1/m]: `extinctionForm`; all of it (x), and that of flakes and stones, which have no bow (y). Twin:
+ * test/twins/precipitation.ts
+ */
+export const fallExtinctions = /*#__PURE__*/ Fn(
   ([rate, snow, hail]: [Float, Float, Float]) => {
     const { rain: r, snow: s, hail: h } = extinctionForm
     const positive = rate.max(1e-6).toConst()
-    const drops = positive.pow(r[1]).mul(r[0])
-    const flakes = positive.pow(s[1]).mul(s[0])
-    const both = mix(drops, flakes, snow).mul(rate.greaterThan(0).select(1, 0))
-    return both.add(hail.mul(h)).div(1000)
+    const isThere = rate.greaterThan(0).select(1 / 1000, 0).toConst()
+    const drops = positive.pow(r[1]).mul(r[0]).mul(snow.oneMinus()).mul(isThere)
+    const others = positive.pow(s[1]).mul(s[0]).mul(snow).mul(isThere).add(hail.mul(h / 1000))
+    return vec2(drops.add(others), others)
   },
-  layout('precipitationExtinction', 'float', { rate: 'float', snow: 'float', hail: 'float' })
+  layout('precipitationExtinctions', 'vec2', { rate: 'float', snow: 'float', hail: 'float' })
 )
 
 /** Share of snow at an altitude [m], in [0, 1]. */
