@@ -1,11 +1,12 @@
 /** Constants of precipitation: tsl/fall.ts. */
 export const fallForm = {
   /**
-   * Speeds at which drops of 2 mm (Gunn & Kinzer 1949, table 2) and flakes (Locatelli & Hobbs 1974) fall [m/s]. Slower: shafts lean
-   * more (*Rain and snow*).
+   * Speeds at which drops of 2 mm (Gunn & Kinzer 1949, table 2), flakes (Locatelli & Hobbs 1974) and stones of 10 mm (Matson & Huggins
+   * 1980) fall [m/s]. Slower: shafts lean more (*Rain and snow*).
    */
   rainSpeed: 6.5,
   snowSpeed: 1.2,
+  hailSpeed: 11.5,
   /** Wind at the ground over that at the base, between which it grows evenly [–]. Greater: upright shafts (*Rain and snow*). */
   groundWind: 0.4,
   /** Exponent of the rate in the column's rank: greater, and more falls in cores, with softer edges (*Rain and snow*). */

@@ -34,6 +34,8 @@ describe('precipitation of a layer', () => {
       cloudPreset(name).at(0).precipitation?.rate
     expect([rain('shower'), rain('nimbostratus'), rain('snowShower')]).toEqual([12, 3, 1.5])
     expect(rain('overcast')).toBe(undefined)
+    const [storm] = cloudPreset('hailstorm')
+    expect(storm.parameters).toMatchObject({ anvil: 1, precipitation: { rate: 30, hail: 0.4 } })
     expect(() => precipitationShafts({ drops: {} as never })).toThrow(
       'PrecipitationShafts: drops must be a ScatteringPhase or null'
     )
@@ -89,11 +91,12 @@ describe('precipitation', () => {
   })
 
   it('falls in a parabola, the flatter the slower', () => {
-    const { groundWind, rainSpeed, snowSpeed } = fallForm
+    const { groundWind, hailSpeed, rainSpeed, snowSpeed } = fallForm
     const whole = (10 * (1 - groundWind) * 1000) / 2
     expect(lagOf(10, 0, 1000, 3000)).toBeCloseTo(whole / rainSpeed, 3)
     expect(lagOf(10, 0, 1000, -100)).toBeCloseTo(whole / snowSpeed, 3)
     expect(lagOf(10, 500, 1000, 3000)).toBeCloseTo(whole / 4 / rainSpeed, 3)
+    expect(lagOf(10, 0, 1000, 3000, hailSpeed)).toBeCloseTo(whole / hailSpeed, 3)
   })
 
   it('leaves nothing below its floor, of the strongest streaks under the strongest column', () => {

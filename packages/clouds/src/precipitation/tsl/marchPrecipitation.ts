@@ -100,8 +100,13 @@ export function marchPrecipitation(
     const offset = direction.mul(at).toConst() as Vec3
     return { offset, ...view.localCoordinates(offset), distance }
   }
-  /** Adds what is seen of a group with its light: its part, and sums by that of distances, extinctions, those of flakes, and ranks. */
-  const addLight = (group: Vec4, rank: Float): void => {
+  /**
+   * Adds what is seen of a group with its light.
+   *
+   * @param group - Its part, and sums by that of distances with noise, extinctions, and those of flakes.
+   * @param others - Sums of the middles of steps, and of ranks.
+   */
+  const addLight = (group: Vec4, others: Vec2): void => {
     const seen = group.x.toConst() as Float
     const [at, extinction, flaked] = [group.y, group.z, group.w].map(
       sum => sum.div(seen).toConst() as Float
@@ -124,7 +129,7 @@ export function marchPrecipitation(
       .toConst() as Float
     const flakes = flaked.div(extinction).toConst() as Float
     const ofClouds = clouds.sub(own.mul(mapped)).max(0)
-    sums.addAssign(vec4(group.xy, rank, ofClouds.add(1).log().mul(seen)))
+    sums.addAssign(vec4(seen, others, ofClouds.add(1).log().mul(seen)))
     lights.addAssign(vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), 0))
   }
   If(span.greaterThan(1), () => {
@@ -133,7 +138,7 @@ export function marchPrecipitation(
         Break()
       })
       const group = vec4(0).toVar() as Variable<Vec4>
-      const rank = float(0).toVar() as Variable<Float>
+      const others = vec2(0).toVar() as Variable<Vec2>
       loop('fallStep', GROUP, step => {
         const from = float(index).mul(GROUP).add(float(step)).toConst() as Float
         const [start, next] = [from, from.add(1)].map(
@@ -163,14 +168,14 @@ export function marchPrecipitation(
           const seen = transmittance.mul(unhidden).mul(through.oneMinus()).toConst() as Float
           const flaked = found.y.mul(1 - DIFFRACTED)
           group.addAssign(vec4(1, at, extinction, flaked).mul(seen))
-          rank.addAssign(found.z.div(found.x).mul(seen))
+          others.addAssign(vec2(start.add(next).div(2), found.z.div(found.x)).mul(seen))
           const ahead = points.distances.sub(start).clamp(0, length)
           before.mulAssign(ahead.mul(extinction).negate().exp())
           transmittance.mulAssign(through)
         })
       })
       If(group.x.greaterThan(LEAST_SEEN), () => {
-        addLight(group, rank)
+        addLight(group, others)
       })
     })
   })
