@@ -82,11 +82,11 @@ function shadePixels(
   return outputs<[Vec4, Vec4]>(2, ([color, distances]) => {
     const { at, noise } = marchedPixel(viewRays)
     const here = uv() as unknown as Vec2
-    const found = cast.read(here)
+    const found = cast.pointsAt(here)
     const fallen = fall?.read(here)
     const ray = fallen
       ? vec4(encodeDistance(fallen.distance), fallen.end, fallen.transmittance, fallen.steps)
-      : found.ray
+      : cast.rayAt(here).ray
     color.assign(vec4(0, 0, 0, 1))
     distances.assign(vec4(ray.xy, 0, ray.w))
     If(ray.z.lessThan(1), () => {

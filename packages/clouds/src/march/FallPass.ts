@@ -26,7 +26,7 @@ const BEHIND = 0.5
 
 /**
  * What falls on the rays of a frame, with its light: a pass between the march and the light of the clouds. In a shader with the clouds', fewer rays at
- * a time would be under way. What it writes stands in for the march's, so that the clouds' light samples one texture more.
+ * a time would be under way. What it writes stands in for the march's, so that the clouds' light samples no more textures with it than without.
  */
 export class FallPass {
   readonly #target = tableTarget('Welkin.CloudsFall', 1, 1, 2, NearestFilter)
@@ -92,7 +92,8 @@ function draw(
   return outputs<[Vec4, Vec4]>(2, ([radiance, fallen]) => {
     const { at, noise } = marchedPixel(viewRays)
     const here = uv() as unknown as Vec2
-    const { shares, ray, litFall } = cast.read(here)
+    const { shares } = cast.pointsAt(here)
+    const { ray, litFall } = cast.rayAt(here)
     const { direction } = viewRayAt(viewRays, at)
     const distances = marched.distances.sample(here).level(0).toConst() as Vec4
     const looked = { direction, jitter: noise, marched: ray, litFall }
