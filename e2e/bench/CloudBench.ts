@@ -70,7 +70,8 @@ export class CloudBench {
   constructor(
     renderer: WebGPURenderer,
     [width, height]: readonly [number, number],
-    layers: CloudLayers = brokenCumulus()
+    layers: CloudLayers = brokenCumulus(),
+    hasBows = true
   ) {
     this.#renderer = renderer
     renderer.toneMapping = ACESFilmicToneMapping
@@ -83,7 +84,8 @@ export class CloudBench {
     const depth = scenePass.getTextureNode('depth')
     this.#air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
     const rains = [...layers].some(layer => layer.precipitation !== null)
-    const precipitation = rains ? precipitationShafts({ drops: raindrops() }) : undefined
+    const drops = hasBows ? raindrops() : undefined
+    const precipitation = rains ? precipitationShafts({ drops }) : undefined
     const options = { noise: this.#noise, light: this.#light, precipitation }
     this.node = clouds(this.#air, depth, camera, atmosphere, layers, options)
     this.#pipeline = new RenderPipeline(renderer)

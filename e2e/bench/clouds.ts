@@ -13,6 +13,8 @@ interface CloudCase {
   /** Elevation of the sun [°], default 40. */
   sunElevation?: number
   qualities: readonly CloudQualityName[]
+  /** False for rain without rainbows. */
+  hasBows?: boolean
 }
 
 const everyQuality = ['low', 'medium', 'high', 'ultra'] as const
@@ -47,6 +49,13 @@ const cloudCases: readonly CloudCase[] = [
     qualities: ['medium', 'high']
   },
   { name: 'shower', view: ground, layers: shower, qualities: ['high'] },
+  {
+    name: 'shower, without bows',
+    view: ground,
+    layers: () => shower(),
+    qualities: ['high'],
+    hasBows: false
+  },
   { name: 'shower, dry', view: ground, layers: dryShower, qualities: ['high'] }
 ]
 
@@ -181,8 +190,9 @@ export async function timeClouds(
   const costs: CloudCost[] = []
   const cases = cloudCases.filter(({ name }) => name.startsWith(prefix))
   for (const layers of new Set(cases.map(timed => timed.layers))) {
-    const bench = new CloudBench(renderer, size, layers?.())
-    for (const timed of cases.filter(other => other.layers === layers)) {
+    const own = cases.filter(other => other.layers === layers)
+    const bench = new CloudBench(renderer, size, layers?.(), own[0].hasBows)
+    for (const timed of own) {
       const timings = await timeCase(bench, timed, frames)
       timings.forEach(tell)
       costs.push(...timings)
@@ -217,7 +227,7 @@ export function cloudLine(cost: CloudCost): string {
   const each = passes.map(pass => pass.toFixed(2)).join(' ')
   const [still, turning, flying] = [psnr, turningPsnr, flyingPsnr].map(value => value.toFixed(1))
   return (
-    `clouds, ${name.padEnd(12)} ${quality.padEnd(7)} ${ms.toFixed(3)} ms (all passes: ${each})` +
+    `clouds, ${name.padEnd(20)} ${quality.padEnd(7)} ${ms.toFixed(3)} ms (all passes: ${each})` +
     `   PSNR ${still} dB, turning ${turning}, flying ${flying}   flicker ${flicker.toFixed(2)} levels`
   )
 }

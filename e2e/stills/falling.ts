@@ -28,11 +28,11 @@ export const falling = [
     clouds: {
       preset: 'altocumulus',
       layer: {
-        topAltitude: 4600,
+        topAltitude: 4300,
         coverage: 0.25,
-        weatherScale: 0.5,
+        weatherScale: 0.7,
         shapeScale: 0.7,
-        precipitation: { rate: 4, share: 0.9, virgaDepth: 1500, freezingLevel: 0 }
+        precipitation: { rate: 1, share: 0.6, virgaDepth: 900, freezingLevel: 0, streaks: 1.3 }
       }
     },
     place: { longitude: 20, latitude: 45 },
@@ -51,5 +51,15 @@ export const falling = [
     sun: { elevation: 14, azimuth: 206 },
     view: { azimuth: 60, pitch: 9 },
     land: 'snow'
+  },
+  {
+    name: 'nimbostratus',
+    about: 'steady rain from a closed deck: grey bands from its ragged base to the hills, which fade one behind the other',
+    clouds: { preset: 'nimbostratus' },
+    place: { longitude: 20, latitude: 45 },
+    altitude: 60,
+    sun: { elevation: 35, azimuth: 280 },
+    view: { azimuth: 30, pitch: 7 },
+    land: 'hills'
   }
 ] as const

@@ -222,6 +222,20 @@ it('features of the clouds sample as many textures as their README says', async 
     return clouds(air, depth, camera, atmosphere, cloudPreset('shower'), options)
   }, 'Welkin.CloudsShade')
   expect(rainy).toBe(14)
+  // Bows cost nothing where nothing falls: their table is read in the pass of what falls, once a ray that meets any.
+  const [smooth, bowed] = await Promise.all(
+    [undefined, raindrops()].map(drops =>
+      Promise.all(
+        ['Welkin.CloudsShade', 'Welkin.CloudsFall', 'Welkin.CloudsMarch'].map(name =>
+          inPass(({ air, depth, camera, atmosphere }) => {
+            const precipitation = precipitationShafts({ drops })
+            return clouds(air, depth, camera, atmosphere, cloudPreset('shower'), { precipitation })
+          }, name)
+        )
+      )
+    )
+  )
+  expect(bowed).toEqual([smooth[0], smooth[1] + 1, smooth[2]])
   // Casters in sunlight and in moonlight, one with textures of its own, add none: they have a pass of their own, with room for others.
   const passes = [
     ['Welkin.CloudsShade', rainy],

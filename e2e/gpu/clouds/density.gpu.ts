@@ -9,7 +9,7 @@ import { cloudExtinction as extinctionTwin } from '../../../packages/clouds/test
 import { extinctionOf, fallenRank, rateOf } from '../../../packages/clouds/test/twins/precipitation'
 import { layerAt } from '../../../packages/clouds/src/density/tsl/layer'
 import { fallForm } from '../../../packages/clouds/src/precipitation/fallForm'
-import { fallenFrom, fallExtinction } from '../../../packages/clouds/src/precipitation/tsl/fall'
+import { fallenFrom, fallExtinctions } from '../../../packages/clouds/src/precipitation/tsl/fall'
 import { NoiseTextures } from '../../../packages/clouds/test/twins/noiseTextures'
 import { NOISE_SIZE, type NoiseName } from '../../../packages/clouds/src/noise/noiseSizes'
 import { cloudExtinction, verticalOpticalDepth } from '../harness/cloud-extinction'
@@ -207,7 +207,7 @@ function rainDepth(
     const offset = start.add(up.mul(height.sub(altitude))).toConst()
     const sample = { offset, altitude: height, up, distance: place.w }
     const { rate, snow, hail } = fallenFrom(field, undefined, layer, falls, sample)
-    depth.addAssign(fallExtinction(rate, snow, hail).mul(RAIN_DEPTH / COLUMN_STEPS))
+    depth.addAssign(fallExtinctions(rate, snow, hail).x.mul(RAIN_DEPTH / COLUMN_STEPS))
   })
   return depth
 }
@@ -248,10 +248,15 @@ gpuTest(
           const altitude = (RAIN_DEPTH * (k + 0.5)) / COLUMN_STEPS
           const at = up.clone().multiplyScalar(bottomRadius + altitude)
           const rank = fallenRank(places, twin, 0, at, distance)
-          const here = rank > 0 ? rateOf(rate, rank, 1000 - altitude, falls.virgaDepth) : 0
+          const rateUnder = (column: number): number =>
+            column > 0 ? rateOf(rate, column, 1000 - altitude, falls.virgaDepth) : 0
+          const hailUnder = (column: number): number =>
+            rateUnder(column) * hail * MathUtils.smoothstep(column, ...fallForm.hailFrom)
+          const drops = rateUnder(rank) - hailUnder(rank)
           const snow = MathUtils.smoothstep(altitude, 600 - fallForm.melting, 600)
-          const stones = here * hail * MathUtils.smoothstep(rank, ...fallForm.hailFrom)
-          depth += (extinctionOf(here - stones, snow, stones) * RAIN_DEPTH) / COLUMN_STEPS
+          const stones =
+            hail > 0 ? hailUnder(fallenRank(places, twin, 0, at, distance, true)) : 0
+          depth += (extinctionOf(drops, snow, stones) * RAIN_DEPTH) / COLUMN_STEPS
         }
         if (depth > 0.01) wet++
         const got = results[4 * i]

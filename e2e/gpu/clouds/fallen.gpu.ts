@@ -1,6 +1,8 @@
 import { CloudLayers, precipitationShafts } from '@welkin/clouds'
 import { float, int, vec3, vec4 } from 'three/tsl'
 import { fallenOf, lagOf } from '../../../packages/clouds/test/twins/precipitation'
+import { fallForm } from '../../../packages/clouds/src/precipitation/fallForm'
+import { vector3 } from '../../../packages/clouds/src/uniforms'
 import type { WeatherMap } from '../../../packages/clouds/src/density/WeatherMap'
 import { layerAt } from '../../../packages/clouds/src/density/tsl/layer'
 import { fallenFrom, fallLag } from '../../../packages/clouds/src/precipitation/tsl/fall'
@@ -103,6 +105,50 @@ gpuTest(
       expectClose([lag], [expected], { relative: 2e-3 }, told)
       expectClose([found[4 * i + 1]], [base - altitude], { absolute: 1e-3 }, `depth, ${told}`)
     })
+  },
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
+  'hail falls nearer to its column than rain does, by the speeds of both',
+  async t => {
+    const [wind, base] = [20, 2000]
+    const layers = new CloudLayers([
+      {
+        baseAltitude: base,
+        topAltitude: TOP,
+        shear: 0,
+        wind: { east: wind, north: 0 },
+        precipitation: { rate: 20, hail: 0.5, freezingLevel: 3000, streaks: 0 }
+      }
+    ])
+    const scene = await evenClouds(t, layers, { longitude: 20, latitude: 45 })
+    const { field, renderer } = scene
+    const medium = precipitationShafts()
+    medium.update(field, scene.update())
+    const east = vector3()
+    east.value.set(0, 0, 1).cross(field.view.up.value).normalize()
+    const expected = [fallForm.rainSpeed, fallForm.hailSpeed].map(speed =>
+      lagOf(wind, 0, base, 3000, speed)
+    )
+    // Places on the ground from the edge of the columns on, upwind.
+    const step = 10
+    const inputs = Array.from({ length: 300 }, (_, i) => [-i * step, 0, 0, 0])
+    const found = await evaluateOnGpu(renderer, inputs, input => {
+      const column = {
+        fallAt: (_: Int, subpoint: Vec3) => vec4(subpoint.dot(east).greaterThan(0).select(1, -1), 0, 0, 0)
+      } as unknown as WeatherMap
+      const up = field.view.up.toConst() as Vec3
+      const offset = east.mul(input.x).sub(up.mul(field.view.height)).toConst() as Vec3
+      const sample = { offset, altitude: float(0), up, distance: float(100) }
+      const { rate, hail } = fallenFrom(field, column, layerAt(field, int(0)), medium.fallOf(int(0)), sample)
+      return vec4(rate, hail, 0, 1)
+    })
+    const lags = [0, 1].map(k => step * inputs.filter((_, i) => found[4 * i + k] > 0).length)
+    t.note(`rain lags by ${lags[0]} m, hail by ${lags[1]} m`)
+    expectTrue(lags[1] < 0.7 * lags[0], `rain lags by ${lags[0]} m, hail by ${lags[1]} m`)
+    for (const k of [0, 1]) expectClose([lags[k]], [expected[k]], { absolute: 2 * step }, 'lag')
+    scene.dispose()
   },
   { backends: ['webgpu'] }
 )

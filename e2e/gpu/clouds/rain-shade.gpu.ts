@@ -56,7 +56,8 @@ gpuTest(
     ]
     const layers = new CloudLayers([layer])
     const node = clouds(air, depth, camera, atmosphere, layers, {
-      quality: coarse,
+      // Rain falls unevenly: few steps would find another share of it far away in each frame.
+      quality: { ...coarse, layerSteps: 32 },
       noise,
       light,
       precipitation

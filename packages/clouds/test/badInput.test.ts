@@ -175,7 +175,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => cloudEnvironment(wrong(atmosphere))
   ],
   [
-    "cloudPreset: name must be 'fairWeather', 'congestus', 'stratocumulus', 'overcast', 'cumulonimbus', 'altocumulus', 'cirrus', 'mixed', 'shower', 'nimbostratus' or 'snowShower', got 'fair'",
+    "cloudPreset: name must be 'fairWeather', 'congestus', 'stratocumulus', 'overcast', 'cumulonimbus', 'altocumulus', 'cirrus', 'mixed', 'shower', 'nimbostratus', 'snowShower' or 'hailstorm', got 'fair'",
     () => cloudPreset(wrong('fair'))
   ],
   ['CloudLayer: options must be an object such as {', () => new CloudLayer(wrong(layer))],

@@ -21,7 +21,7 @@ export interface CloudPrecipitation {
   readonly hail?: number
   /**
    * Factor of the contrast of streaks, in [0, 3]; default 1. 0 makes even curtains, 2 single trails under single cloudlets, as of
-   * virga. The mean rate stays up to about 1; above, what would be more than four times a column's rate is cut off.
+   * virga. The mean rate stays; none has more than six times its column's.
    */
   readonly streaks?: number
 }

@@ -47,6 +47,13 @@ const storm: Partial<CloudLayerParameters> = {
   wind: { east: 12, north: 3 }
 }
 
+const smallCumulus: Partial<CloudLayerParameters> = {
+  ...cumulus,
+  baseAltitude: 800,
+  topAltitude: 1900,
+  coverage: 0.25
+}
+
 const overcast: Partial<CloudLayerParameters> = {
   baseAltitude: 600,
   topAltitude: 1500,
@@ -89,6 +96,7 @@ export type CloudPresetName =
   | 'shower'
   | 'nimbostratus'
   | 'snowShower'
+  | 'hailstorm'
 
 const presets: Readonly<Record<CloudPresetName, Layers>> = {
   fairWeather: [cumulus],
@@ -106,7 +114,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     }
   ],
   overcast: [overcast],
-  cumulonimbus: [storm, { ...cumulus, baseAltitude: 800, topAltitude: 1900, coverage: 0.25 }],
+  cumulonimbus: [storm, smallCumulus],
   altocumulus: [altocumulus],
   cirrus: [cirrus],
   mixed: [
@@ -126,7 +134,8 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     cumulus
   ],
   nimbostratus: [{ ...overcast, topAltitude: 3500, precipitation: { rate: 3, share: 0.9 } }],
-  snowShower: [{ ...congestus, precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 } }]
+  snowShower: [{ ...congestus, precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 } }],
+  hailstorm: [{ ...storm, precipitation: { rate: 30, share: 0.4, freezingLevel: 3000, hail: 0.4 } }, smallCumulus]
 }
 
 /** All names of {@link cloudPreset}, for menus. */
@@ -146,8 +155,9 @@ export const cloudPresetNames = /*#__PURE__*/ Object.keys(presets) as readonly C
  * - `shower`: towers up to 7 km with rain of 12 mm/h, among small cumulus
  * - `nimbostratus`: a thick closed deck with rain of 3 mm/h
  * - `snowShower`: towering cumulus in cold air, with snow of 1.5 mm/h of water
+ * - `hailstorm`: `cumulonimbus` with rain of 30 mm/h, and shafts of hail in its midst
  *
- * What falls from the last three is seen if `clouds` has a `precipitation`.
+ * What falls from the last four is seen if `clouds` has a `precipitation`.
  *
  * @param count - Least number of layers, to take other presets by `copy` later.
  * @throws If there is no preset of this name, or the count is none.

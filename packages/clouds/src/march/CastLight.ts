@@ -33,12 +33,16 @@ export interface CastScene {
   readonly casters: ReadonlySet<CloudCaster>
 }
 
-/** A marched ray, with the light that casters leave to it. */
-export interface CastRay {
+/** Shares of the points of a ray's clouds, with the light that casters leave to them. */
+export interface CastPoints {
   readonly shares: Vec4
-  readonly ray: Vec4
-  /** Parts of the light that reach the points of the clouds, in [0, 1], where a pass has found them. */
+  /** Parts of the light that reach the points, in [0, 1], where a pass has found them. */
   readonly lit?: Vec4
+}
+
+/** A marched ray, with the light that casters leave to what falls. */
+export interface CastRay {
+  readonly ray: Vec4
   /** Parts that reach four places of what falls: see `PrecipitationShafts.placesOn`. */
   readonly litFall?: Vec4
 }
@@ -152,21 +156,27 @@ export class CastLight {
     return lit
   }
 
+  #read(node: LevelTexture<Vec2>, here: Vec2): Vec4 {
+    return node.sample(here).level(0).toConst()
+  }
+
+  /** Points of a pixel's ray; to be called inside of a shader function. */
+  pointsAt(here: Vec2): CastPoints {
+    if (!this.#hasPass) return { shares: this.#read(this.#marched.shares, here) }
+    const points = parted(this.#read(this.#packed[0], here))
+    return { shares: points.value, lit: points.byte }
+  }
+
   /** Ray of a pixel, as it was marched; to be called inside of a shader function. */
-  read(here: Vec2): CastRay {
-    const read = (node: LevelTexture<Vec2>): Vec4 => node.sample(here).level(0).toConst()
-    const { shares, ray } = this.#marched
-    if (!this.#hasPass) return { shares: read(shares), ray: read(ray) }
-    const points = parted(read(this.#packed[0]))
-    const cast = { shares: points.value, lit: points.byte }
-    if (this.#packed.length === 1) return { ...cast, ray: read(ray) }
-    const fallen = parted(read(this.#packed[1]))
-    const scaled = fallen.value.div(vec4(...RAY_SCALE)).toConst() as Vec4
-    return { ...cast, ray: scaled, litFall: fallen.byte }
+  rayAt(here: Vec2): CastRay {
+    if (!this.#hasPass || this.#packed.length === 1)
+      return { ray: this.#read(this.#marched.ray, here) }
+    const fallen = parted(this.#read(this.#packed[1], here))
+    return { ray: fallen.value.div(vec4(...RAY_SCALE)).toConst(), litFall: fallen.byte }
   }
 
   /** Part of the light that reaches a point of a ray: see `SeenPoints.lit`. */
-  litOn({ lit }: CastRay, direction: Vec3, jitter: Float): SeenPoints['lit'] {
+  litOn({ lit }: CastPoints, direction: Vec3, jitter: Float): SeenPoints['lit'] {
     if (lit !== undefined) return own => lit.dot(own)
     if (this.#scene.casters.size === 0) return undefined
     return (_, distance) => this.#litAt(direction, distance, jitter)

@@ -12,6 +12,7 @@ import { encodeDistance } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import { upscale } from '../temporal/tsl/upscale'
 import { CastLight, type CastScene } from './CastLight'
+import { FallPass } from './FallPass'
 import { withAerialPerspective } from './tsl/aerialPerspective'
 import { marchClouds } from './tsl/march'
 import { marchedPixel, type MarchedTargets } from './tsl/marchedPixel'
@@ -71,39 +72,41 @@ function marchPixels(scene: CloudScene): Outputs {
 }
 
 /** Shades what was marched: light with the air in front of it, and its distances. */
-function shadePixels(scene: CloudScene, marched: MarchedTargets, cast: CastLight): Outputs {
-  const { field, viewRays, precipitation } = scene
+function shadePixels(
+  scene: CloudScene,
+  marched: MarchedTargets,
+  cast: CastLight,
+  fall: FallPass | undefined
+): Outputs {
+  const { field, viewRays } = scene
   return outputs<[Vec4, Vec4]>(2, ([color, distances]) => {
     const { at, noise } = marchedPixel(viewRays)
     const here = uv() as unknown as Vec2
-    const found = cast.read(here)
-    const { ray } = found
+    const found = cast.pointsAt(here)
+    const fallen = fall?.read(here)
+    const ray = fallen
+      ? vec4(encodeDistance(fallen.distance), fallen.end, fallen.transmittance, fallen.steps)
+      : cast.rayAt(here).ray
     color.assign(vec4(0, 0, 0, 1))
     distances.assign(vec4(ray.xy, 0, ray.w))
-    // Rain may be where no cloud is.
-    If(ray.z.lessThan(precipitation ? 2 : 1), () => {
+    If(ray.z.lessThan(1), () => {
       const { direction, directionView } = viewRayAt(viewRays, at)
       const points = {
         distances: marched.distances.sample(here).level(0).toConst() as Vec4,
         shares: found.shares,
         lit: cast.litOn(found, direction, noise)
       }
-      const clouds = { points, transmittance: ray.z, distance: ray.x.exp2() }
-      const rays = { direction, jitter: noise, marched: ray, litFall: found.litFall }
-      const seen = precipitation?.among(scene, rays, clouds, distances) ?? {
-        ...clouds,
-        radiance: shadePoints(scene, direction, points)
-      }
-      If(seen.transmittance.lessThan(1), () => {
-        color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
-      })
+      const clouds = shadePoints(scene, direction, points)
+      const radiance = fallen ? clouds.mul(fallen.before).add(fallen.radiance) : clouds
+      const seen = { radiance, transmittance: ray.z, distance: ray.x.exp2() }
+      color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
     })
   })
 }
 
 /**
  * Render targets and passes of a camera's clouds. A frame takes five passes: the weather around the camera, the
- * march of one pixel of each block, its light (before it, with most casters, {@link CastLight}), the statistics of the cells between marched pixels, and the upscale, which blends them
+ * march of one pixel of each block, its light (before it, with most casters, {@link CastLight}, and where anything may fall, {@link FallPass}), the statistics of the cells between marched pixels, and the upscale, which blends them
  * into the history of the frames before.
  */
 export class CloudRenderer {
@@ -119,6 +122,7 @@ export class CloudRenderer {
   #kinds = ''
   #castVersion = ''
   readonly #cast: CastLight
+  readonly #fall: FallPass | undefined
   readonly #march: FragmentPass
   readonly #shade: FragmentPass
   readonly #gather: FragmentPass
@@ -145,7 +149,11 @@ export class CloudRenderer {
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
     this.seen = { distances, shares, ray }
     this.#cast = new CastLight(scene, this.seen)
-    this.#shade = new FragmentPass('Welkin.CloudsShade', shadePixels(scene, this.seen, this.#cast))
+    this.#fall = precipitation && new FallPass(scene, precipitation, this.seen, this.#cast)
+    this.#shade = new FragmentPass(
+      'Welkin.CloudsShade',
+      shadePixels(scene, this.seen, this.#cast, this.#fall)
+    )
     for (const { material } of [this.#march, this.#shade]) {
       const key = material.customProgramCacheKey.bind(material)
       material.customProgramCacheKey = () => key() + kindsOf(field) + this.#cast.version
@@ -176,6 +184,7 @@ export class CloudRenderer {
     const down = Math.ceil(height / block)
     this.#marchedTarget.setSize(across, down)
     this.#cast.setSize(across, down)
+    this.#fall?.setSize(across, down)
     this.#shadedTarget.setSize(across, down)
     this.#cellsTarget.setSize(across + 1, down + 1)
     frame.size.value.set(width, height)
@@ -192,6 +201,7 @@ export class CloudRenderer {
     this.#weatherMap.render(renderer, up)
     this.#march.render(renderer, this.#marchedTarget)
     this.#cast.render(renderer)
+    this.#fall?.render(renderer)
     this.#shade.render(renderer, this.#shadedTarget)
     this.#gather.render(renderer, this.#cellsTarget)
     this.#current = 1 - this.#current
@@ -207,8 +217,10 @@ export class CloudRenderer {
     const kinds = kindsOf(this.#field)
     const { version } = this.#cast
     if (kinds !== this.#kinds) this.#march.material.needsUpdate = true
-    if (kinds !== this.#kinds || version !== this.#castVersion)
+    if (kinds !== this.#kinds || version !== this.#castVersion) {
       this.#shade.material.needsUpdate = true
+      if (this.#fall) this.#fall.version = kinds + version
+    }
     this.#kinds = kinds
     this.#castVersion = version
   }
@@ -217,6 +229,7 @@ export class CloudRenderer {
   dispose(): void {
     this.#weatherMap.dispose()
     this.#cast.dispose()
+    this.#fall?.dispose()
     for (const target of this.#targets) target.dispose()
     for (const pass of [this.#march, this.#shade, this.#gather, ...this.#upscale]) {
       pass.dispose()

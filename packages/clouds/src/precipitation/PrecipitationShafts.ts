@@ -11,16 +11,14 @@ import { layerPeriods } from '../layers/layerUniforms'
 import { meanColumnOf } from '../layers/meanColumn'
 import { windAxis } from '../layers/wind'
 import type { ShadingContext } from '../light/tsl/shadingContext'
-import { POINTS, type SeenClouds } from '../march/tsl/seenPoints'
-import { shadePoints, type LitRay } from '../march/tsl/shadePoints'
+import { POINTS, type SeenPoints } from '../march/tsl/seenPoints'
 import { GROWING_TOGETHER } from '../march/tsl/layerBoundaries'
-import { encodeDistance } from '../temporal/tsl/packing'
 import type { DeckFallNodes } from '../environment/tsl/decks'
 import { vec4Array, type Float, type Int, type Variable, type Vec3, type Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import { fallColumnOf } from './cpu/fallColumn'
 import { DIFFRACTED, fallFloor, fallForm, STREAK_WIDTH } from './fallForm'
-import { fallenFrom, fallExtinction } from './tsl/fall'
+import { fallenFrom, fallExtinctions } from './tsl/fall'
 import type { FallNodes } from './tsl/fallColumn'
 import { distanceAt, fallStretch, partAt, type FallStretch } from './tsl/fallStretch'
 import { CLOUD_RADIUS, lightPrecipitation } from './tsl/lightPrecipitation'
@@ -34,6 +32,18 @@ export interface PrecipitationShaftsOptions {
   drops?: ScatteringPhase | null
 }
 
+/** What falls on a ray, and what the ray sees behind it. */
+export interface FallOnRay {
+  /** Spectral radiance for unit irradiance of the bare sun [1/sr]. */
+  readonly radiance: Vec4
+  /** Mean distance of clouds and of what falls, by what is seen of them [m]. */
+  readonly distance: Float
+  /** Share of light that passes both. */
+  readonly transmittance: Float
+  /** Share of the clouds' light that passes what falls before them. */
+  readonly before: Float
+}
+
 /** Vectors that a layer takes in the uniforms. */
 const STRIDE = 4
 
@@ -41,7 +51,7 @@ const STRIDE = 4
 const DECK_WIDTH = 1500
 
 /** Shortest mean length of steps of the march over the width of streaks [–], and at most [m]. Longer: virga has grain (*Virga*). */
-const STEP = 1.2
+const STEP = 0.4
 const LONGEST_STEP = 1200
 
 /** Altitude below all that is drawn, where nothing falls [m]. */
@@ -167,7 +177,7 @@ export class PrecipitationShafts {
       this.fallOf(layer.index),
       sample
     )
-    return fallExtinction(rate, snow, hail).mul(1 - DIFFRACTED)
+    return fallExtinctions(rate, snow, hail).x.mul(1 - DIFFRACTED)
   }
 
   /**
@@ -245,21 +255,19 @@ export class PrecipitationShafts {
   }
 
   /**
-   * Clouds on a ray with what falls before and behind them, and their light. To be called inside of a shader function.
+   * What falls before and behind the clouds of a ray, with its light. To be called inside of a shader function.
    *
-   * @param ray - Its direction, noise in [0, 1), what was marched (log₂ of its end in y, transmittance in z), and parts of the
-   *   light that casters leave at {@link placesOn}, if there are any.
-   * @param clouds - Clouds on the ray, not lit yet.
-   * @param distances - Output of the pass, whose first component is the log₂ of the distance of what is seen.
+   * @param ray - Its direction, noise in [0, 1), what was marched (log₂ of the clouds' distance and of its end, transmittance), and
+   *   parts of the light that casters leave at {@link placesOn}, if there are any.
+   * @param points - Clouds on the ray.
    */
   among(
     context: ShadingContext,
     ray: { direction: Vec3; jitter: Float; marched: Vec4; litFall?: Vec4 },
-    clouds: SeenClouds,
-    distances: Variable<Vec4>
-  ): SeenClouds & LitRay {
-    const { points } = clouds
+    points: SeenPoints
+  ): FallOnRay {
     const { direction, marched, litFall } = ray
+    const { x: cloudDistance, z: transmittance } = marched
     const stretch = this.#stretchOn(context.field, direction, marched, points.distances)
     const space = {
       fallOf: (index: Int) => this.fallOf(index),
@@ -271,24 +279,22 @@ export class PrecipitationShafts {
       width: this.#width,
       shortest: this.#shortest
     }
-    // Clouds first: what would have to be kept through their shading makes it slower.
-    const radiance = shadePoints(context, direction, points).toVar() as Variable<Vec4>
-    const distance = clouds.distance.toVar() as Variable<Float>
+    const radiance = vec4(0).toVar() as Variable<Vec4>
+    const distance = cloudDistance.exp2().toVar() as Variable<Float>
     const seen = marchPrecipitation(context, space, ray, stretch, points)
     const { weight } = seen
-    const shares = points.shares.mul(seen.before).toConst() as Vec4
-    const ofAll = points.shares.dot(vec4(1)).max(1e-6)
-    radiance.mulAssign(shares.dot(vec4(1)).div(ofAll))
+    const ofClouds = points.shares.dot(seen.before).toConst() as Float
     If(weight.greaterThan(LEAST_SEEN), () => {
       const lit = litFall && this.#litAt(stretch, litFall, seen.distance)
-      const light = lightPrecipitation(context, this.drops, direction, seen, this.#above, lit)
-      radiance.addAssign(light)
-      const ofClouds = shares.dot(vec4(1))
+      radiance.assign(lightPrecipitation(context, this.drops, direction, seen, this.#above, lit))
       distance.assign(mix(seen.distance, distance, ofClouds.div(ofClouds.add(weight))))
     })
-    distances.assign(vec4(encodeDistance(distance), marched.y, 0, marched.w))
-    const transmittance = clouds.transmittance.mul(seen.transmittance).toConst() as Float
-    return { points: { distances: points.distances, shares }, radiance, transmittance, distance }
+    return {
+      radiance,
+      distance,
+      transmittance: transmittance.mul(seen.transmittance).toConst(),
+      before: ofClouds.div(points.shares.dot(vec4(1)).max(1e-6)).toConst()
+    }
   }
 }
 

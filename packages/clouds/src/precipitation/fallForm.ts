@@ -1,11 +1,12 @@
 /** Constants of precipitation: tsl/fall.ts. */
 export const fallForm = {
   /**
-   * Speeds at which drops of 2 mm (Gunn & Kinzer 1949, table 2) and flakes (Locatelli & Hobbs 1974) fall [m/s]. Slower: shafts lean
-   * more (*Rain and snow*).
+   * Speeds at which drops of 2 mm (Gunn & Kinzer 1949, table 2), flakes (Locatelli & Hobbs 1974) and stones of 10 mm (Matson & Huggins
+   * 1980) fall [m/s]. Slower: shafts lean more (*Rain and snow*).
    */
   rainSpeed: 6.5,
   snowSpeed: 1.2,
+  hailSpeed: 11.5,
   /** Wind at the ground over that at the base, between which it grows evenly [–]. Greater: upright shafts (*Rain and snow*). */
   groundWind: 0.4,
   /** Exponent of the rate in the column's rank: greater, and more falls in cores, with softer edges (*Rain and snow*). */
@@ -25,13 +26,13 @@ export const fallForm = {
    * Streaks: changes of the rate's logarithm by coarse and fine billows above, per deviation of their noise [–]. 0: smooth curtains;
    * greater: combs (*Rain and snow*).
    */
-  coarseStreaks: 0.45,
-  fineStreaks: 0.4,
+  coarseStreaks: 0.6,
+  fineStreaks: 0.55,
   /** Height in the layer of the billows that make them, in [0, 1]: about where cloudlets are widest (*Virga*). */
   streakHeight: 0.3,
   /** Blur of streaks over the way by which they lag, and over the depth of fall [–]: drops differ in speed. 0: lines to the ground. */
-  lagBlur: 0.08,
-  fallBlur: 0.03
+  lagBlur: 0.03,
+  fallBlur: 0.01
 } as const
 
 /** Width of coarse streaks over the period of a layer's shape [–]. */
@@ -53,7 +54,13 @@ export const extinctionForm = {
 } as const
 
 /** Rate of the strongest streaks over that of their column [–]. */
-export const STRONGEST = 4
+export const STRONGEST = 6
+
+/**
+ * What is cut off above `STRONGEST`, made up for: from a deviation of logarithms on, by a factor of the square of the rest, in the median's
+ * logarithm [–]. Fitted: means are 1 to 0.9 % up to a deviation of 2.5.
+ */
+export const streakBound = { from: 0.75, factor: 0.435 } as const
 
 /**
  * Altitude below which nothing falls from a layer, since even the strongest streaks have evaporated [m]; −∞ where nothing evaporates.

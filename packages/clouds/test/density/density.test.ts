@@ -315,7 +315,8 @@ describe('cloudPreset', () => {
       'mixed',
       'shower',
       'nimbostratus',
-      'snowShower'
+      'snowShower',
+      'hailstorm'
     ])
     for (const name of cloudPresetNames) {
       cloudPreset(name).at(0).set({ coverage: 0.01 })

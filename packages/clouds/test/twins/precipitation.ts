@@ -1,5 +1,5 @@
 import { MathUtils, Vector3 } from 'three'
-import { extinctionForm, fallForm, STRONGEST } from '../../src/precipitation/fallForm'
+import { extinctionForm, fallForm, streakBound, STRONGEST } from '../../src/precipitation/fallForm'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
 import { dry } from '../../src/layers/precipitation'
 import { windAxis } from '../../src/layers/wind'
@@ -49,9 +49,16 @@ export function fallenOf(layer: CloudLayerParameters, rank: number, altitude: nu
  * base's at the ground. `fallLag` of tsl/fall.ts has it in closed form.
  *
  * @param wind - Speed of the wind at the base [m/s].
+ * @param rainSpeed - Speed of fall below the freezing level [m/s].
  */
-export function lagOf(wind: number, altitude: number, base: number, freezingLevel: number): number {
-  const { groundWind, rainSpeed, snowSpeed } = fallForm
+export function lagOf(
+  wind: number,
+  altitude: number,
+  base: number,
+  freezingLevel: number,
+  rainSpeed: number = fallForm.rainSpeed
+): number {
+  const { groundWind, snowSpeed } = fallForm
   const step = (base - altitude) / STEPS
   let lag = 0
   for (let i = 0; i < STEPS; i++) {
@@ -79,37 +86,46 @@ export function rateOf(rate: number, rank: number, depth: number, virgaDepth: nu
 }
 
 /**
- * Rate of a streak over that of its column: the normal distribution of logarithms with mean 1.
+ * Rate of a streak over that of its column: the normal distribution of logarithms, cut off, with mean 1.
  *
  * @param deviations - Noise that blur has left, over its deviation.
  */
 export function streakOf(deviations: number, amount: number, lost: number): number {
   const { coarseStreaks, fineStreaks } = fallForm
   const deviation = Math.hypot(coarseStreaks, fineStreaks) * amount * (1 - lost)
-  const median = Math.exp(-(deviation ** 2) / 2)
-  return Math.min(median * Math.exp(deviation * deviations), STRONGEST)
+  const { from, factor } = streakBound
+  const least = Math.min(deviation, from)
+  const above = deviation - least
+  // (least + above)² / 2, of which a part is made up for.
+  const lowered = least ** 2 / 2 + least * above + (0.5 - factor) * above ** 2
+  return Math.min(Math.exp(deviation * deviations - lowered), STRONGEST)
 }
 
 /**
  * Rank of the column from which it falls at a place, by planet-centred coordinates: `fallenFrom` of tsl/fall.ts, without streaks.
  *
  * @param position - Displacement from the planet's centre, in the mapped space [m].
+ * @param isHail - True for stones, which fall faster.
  */
 export function fallenRank(
   state: CloudState,
   noise: NoiseTextures,
   index: number,
   position: Vector3,
-  distance: number
+  distance: number,
+  isHail = false
 ): number {
   const layer = state.layers[index]
   const { share, freezingLevel } = { ...dry, ...layer.precipitation }
+  const wind = Math.hypot(layer.wind.east, layer.wind.north)
   const up = position.clone().normalize()
   const altitude = Math.min(position.length() - state.bottomRadius, layer.baseAltitude)
-  const { east, north } = layer.wind
+  const base = layer.baseAltitude
   const lag =
-    lagOf(Math.hypot(east, north), altitude, layer.baseAltitude, freezingLevel) +
-    layer.shear * (layer.baseAltitude - altitude)
+    (isHail
+      ? lagOf(wind, altitude, base, Infinity, fallForm.hailSpeed)
+      : lagOf(wind, altitude, base, freezingLevel)) +
+    layer.shear * (base - altitude)
   const axis = windAxis(layer.wind, state.zenith ?? up, new Vector3())
   const source = position.clone().addScaledVector(axis.cross(up), lag)
   const { sum, coverage } = weatherAt(state, noise, index, source, distance)

@@ -1,4 +1,4 @@
-import { Fn, If, float, mix, smoothstep, vec2 } from 'three/tsl'
+import { Fn, If, float, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import { billows, levelOf } from '../../density/tsl/billows'
 import type { LayerNodes } from '../../density/tsl/layer'
@@ -8,7 +8,7 @@ import { strengthForm } from '../../density/formConstants'
 import type { WeatherMap } from '../../density/WeatherMap'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
 import { layout, type Float, type Variable, type Vec2, type Vec3 } from '../../tsl-types'
-import { extinctionForm, fallForm, STRONGEST } from '../fallForm'
+import { extinctionForm, fallForm, streakBound, STRONGEST } from '../fallForm'
 import { fallColumn, type FallNodes } from './fallColumn'
 
 /** Precipitation at a place. */
@@ -57,8 +57,12 @@ export const fallRate = /*#__PURE__*/ Fn(
       .mul(streak)
       .mul(rate)
       .mul(core + 1)
-    const left = falling.pow(b).sub(rate.pow(b).mul(depth)).max(0)
-    return depth.greaterThan(0).select(left.pow(1 / b), falling)
+      .toVar() as Variable<Float>
+    If(depth.greaterThan(0), () => {
+      const left = falling.pow(b).sub(rate.pow(b).mul(depth)).max(0)
+      falling.assign(left.pow(1 / b))
+    })
+    return falling
   },
   layout('precipitationRate', 'float', {
     rate: 'float',
@@ -68,12 +72,12 @@ export const fallRate = /*#__PURE__*/ Fn(
   })
 )
 
-/** Variance of the streaks' noise near by. */
-const STREAK_VARIANCE = fallForm.coarseStreaks ** 2 + fallForm.fineStreaks ** 2
+/** Deviation of the streaks' noise near by. */
+const STREAK_DEVIATION = Math.hypot(fallForm.coarseStreaks, fallForm.fineStreaks)
 
 /**
- * Rate of a streak over that of its column: of a normal distribution of logarithms, as rates of rain have, with mean 1. Twin:
- * test/twins/precipitation.ts
+ * Rate of a streak over that of its column: of a normal distribution of logarithms, as rates of rain have, cut off at `STRONGEST`, with
+ * mean 1. Twin: test/twins/precipitation.ts
  *
  * @param noise - Sum of billows, whose variance is that of `fallForm` where none are lost.
  * @param amount - Factor of the noise.
@@ -82,35 +86,94 @@ const STREAK_VARIANCE = fallForm.coarseStreaks ** 2 + fallForm.fineStreaks ** 2
  */
 export const fallStreak = /*#__PURE__*/ Fn(
   ([noise, amount, lost]: [Float, Float, Float]) => {
-    const deviation = amount.mul(lost.oneMinus()).toConst()
-    const mean = deviation.mul(deviation).mul(STREAK_VARIANCE / 2)
-    return noise.mul(amount).sub(mean).exp().min(STRONGEST)
+    const deviation = amount.mul(lost.oneMinus()).mul(STREAK_DEVIATION).toConst()
+    const { from, factor } = streakBound
+    const cut = deviation.sub(from).max(0).toConst()
+    const median = cut.mul(cut).mul(factor).sub(deviation.mul(deviation).div(2))
+    return noise.mul(amount).add(median).exp().min(STRONGEST)
   },
   layout('precipitationStreak', 'float', { noise: 'float', amount: 'float', lost: 'float' })
 )
 
-/** Extinction [1/m]: `extinctionForm`. Twin: test/twins/precipitation.ts */
-export const fallExtinction = /*#__PURE__*/ Fn(
+/**
+ * Extinction [1/m]: `extinctionForm`; all of it (x), and that of flakes and stones, which have no bow (y). Twin:
+ * test/twins/precipitation.ts
+ */
+export const fallExtinctions = /*#__PURE__*/ Fn(
   ([rate, snow, hail]: [Float, Float, Float]) => {
     const { rain: r, snow: s, hail: h } = extinctionForm
     const positive = rate.max(1e-6).toConst()
-    const drops = positive.pow(r[1]).mul(r[0])
-    const flakes = positive.pow(s[1]).mul(s[0])
-    const both = mix(drops, flakes, snow).mul(rate.greaterThan(0).select(1, 0))
-    return both.add(hail.mul(h)).div(1000)
+    const isThere = rate.greaterThan(0).select(1 / 1000, 0).toConst()
+    const drops = positive.pow(r[1]).mul(r[0]).mul(snow.oneMinus()).mul(isThere)
+    const others = positive.pow(s[1]).mul(s[0]).mul(snow).mul(isThere).add(hail.mul(h / 1000))
+    return vec2(drops.add(others), others)
   },
-  layout('precipitationExtinction', 'float', { rate: 'float', snow: 'float', hail: 'float' })
+  layout('precipitationExtinctions', 'vec2', { rate: 'float', snow: 'float', hail: 'float' })
 )
 
 /** Share of snow at an altitude [m], in [0, 1]. */
 export const snowShare = (altitude: Float, freezingLevel: Float): Float =>
   smoothstep(freezingLevel.sub(fallForm.melting), freezingLevel, altitude).toConst()
 
+/** Where something is and what is above it, for what falls there from a layer. */
+interface FallPlace {
+  readonly field: CloudField
+  readonly map: WeatherMap | undefined
+  readonly layer: LayerNodes
+  readonly nodes: FallNodes
+  readonly sample: CloudSample
+  /** Depth of fall, and width of what the sample stands for [m]. */
+  readonly depth: Float
+  readonly footprint: Float
+}
+
+/**
+ * Rate [mm/h] and rank of the column from which something falls that lags by `lag`, of {@link fallLag}: it left its cloud downwind, where the wind that grows with
+ * height has carried that in the meantime. The column's rank is looked up there; streaks are billows of the cloud at the same point.
+ */
+function fallAlong(
+  lag: Vec2,
+  { field, map, layer, nodes, sample, depth, footprint }: FallPlace
+): { rate: Variable<Float>; rank: Variable<Float> } {
+  const rate = float(0).toVar() as Variable<Float>
+  const rank = float(0).toVar() as Variable<Float>
+  const { baseAltitude } = layer
+  const { altitude, up, distance } = sample
+  const aside = nodes.windAxis.mul(lag.x).add(nodes.shearAxis.mul(lag.y))
+  const drift = aside.cross(up).toConst() as Vec3
+  const offset = sample.offset.add(drift).toConst() as Vec3
+  const above: CloudSample = { offset, altitude, up, distance }
+  const subpoint = subpointOffset(field, above).toConst() as Vec3
+  const column =
+    map?.fallAt(layer.index, subpoint) ??
+    fallColumn(field, layer, nodes, backgroundAt(field, layer, above), subpoint, footprint)
+  rank.assign(column.x.max(0))
+  If(rank.greaterThan(0), () => {
+    const rise = layer.thickness.mul(fallForm.streakHeight).add(baseAltitude).sub(altitude)
+    const source = offset.add(up.mul(rise)).toConst() as Vec3
+    const blur = drift.length().mul(fallForm.lagBlur).add(depth.mul(fallForm.fallBlur))
+    const width = footprint.max(blur).mul(layer.perShapePeriod)
+    const level = levelOf(width, 1 / NOISE_SIZE.shape)
+    const { coarse, fine } = billows(field, layer, source, column.zw, level)
+    const noise = coarse.mul(fallForm.coarseStreaks).add(fine.mul(fallForm.fineStreaks))
+    const lost = smoothstep(...strengthForm.billowLevels, level)
+    const streak = fallStreak(noise, nodes.streaks.mul(layer.shapeAmount), lost)
+    const onset = nodes.ceiling
+      .sub(altitude)
+      .div(nodes.ceiling.sub(baseAltitude))
+      .clamp(0, 1)
+    rate.assign(fallRate(nodes.rate, rank, streak, depth.mul(nodes.perVirga)).mul(onset))
+  })
+  return { rate, rank }
+}
+
+/** Share of hail in what falls from a column, over the layer's. */
+const hailShare = (rank: Float): Float => smoothstep(...fallForm.hailFrom, rank)
+
 /**
  * Precipitation of a layer at a place. To be called inside of a shader function.
  *
- * It left its cloud downwind, where the wind that grows with height has carried that in the meantime: the column's rank is looked up
- * there. Streaks are billows of the cloud at the same point.
+ * Stones fall faster than drops, and so nearer to where they come from: shafts of hail are steeper than the rain about them.
  */
 export function fallenFrom(
   field: CloudField,
@@ -120,45 +183,24 @@ export function fallenFrom(
   sample: CloudSample
 ): Fallen {
   const rate = float(0).toVar() as Variable<Float>
+  const hail = float(0).toVar() as Variable<Float>
   const rank = float(0).toVar() as Variable<Float>
   const { baseAltitude } = layer
-  const { ceiling } = nodes
-  const { altitude, up, distance } = sample
-  If(nodes.rate.greaterThan(0).and(altitude.lessThan(ceiling)), () => {
+  const { altitude, distance } = sample
+  If(nodes.rate.greaterThan(0).and(altitude.lessThan(nodes.ceiling)), () => {
     const depth = baseAltitude.sub(altitude).max(0).toConst() as Float
-    const lag = fallLag(altitude, baseAltitude, nodes.freezingLevel).toConst() as Vec2
-    const aside = nodes.windAxis.mul(lag.x).add(nodes.shearAxis.mul(lag.y))
-    const drift = aside.cross(up).toConst() as Vec3
-    const offset = sample.offset.add(drift).toConst() as Vec3
-    const above: CloudSample = { offset, altitude, up, distance }
-    const subpoint = subpointOffset(field, above).toConst() as Vec3
     const footprint = distance.mul(field.pixelAngle).toConst() as Float
-    const column =
-      map?.fallAt(layer.index, subpoint) ??
-      fallColumn(field, layer, nodes, backgroundAt(field, layer, above), subpoint, footprint)
-    rank.assign(column.x.max(0))
-    If(rank.greaterThan(0), () => {
-      const rise = layer.thickness.mul(fallForm.streakHeight).add(baseAltitude).sub(altitude)
-      const source = offset.add(up.mul(rise)).toConst() as Vec3
-      const blur = drift.length().mul(fallForm.lagBlur).add(depth.mul(fallForm.fallBlur))
-      const width = footprint.max(blur).mul(layer.perShapePeriod)
-      const level = levelOf(width, 1 / NOISE_SIZE.shape)
-      const { coarse, fine } = billows(field, layer, source, column.zw, level)
-      const noise = coarse.mul(fallForm.coarseStreaks).add(fine.mul(fallForm.fineStreaks))
-      const lost = smoothstep(...strengthForm.billowLevels, level)
-      const streak = fallStreak(noise, nodes.streaks.mul(layer.shapeAmount), lost)
-      const onset = ceiling.sub(altitude).div(ceiling.sub(baseAltitude)).clamp(0, 1)
-      rate.assign(fallRate(nodes.rate, rank, streak, depth.mul(nodes.perVirga)).mul(onset))
+    const place: FallPlace = { field, map, layer, nodes, sample, depth, footprint }
+    const lag = fallLag(altitude, baseAltitude, nodes.freezingLevel).toConst() as Vec2
+    const fallen = fallAlong(lag, place)
+    rank.assign(fallen.rank)
+    rate.assign(fallen.rate)
+    If(nodes.hail.greaterThan(0), () => {
+      rate.mulAssign(nodes.hail.mul(hailShare(rank)).oneMinus())
+      const stones = fallAlong(vec2(depth.mul(depth).div(fallForm.hailSpeed), depth), place)
+      hail.assign(stones.rate.mul(nodes.hail).mul(hailShare(stones.rank)))
+      rank.assign(rank.max(stones.rank))
     })
   })
-  const hail = rate
-    .mul(nodes.hail)
-    .mul(smoothstep(...fallForm.hailFrom, rank))
-    .toConst() as Float
-  return {
-    rate: rate.sub(hail).toConst(),
-    hail,
-    snow: snowShare(altitude, nodes.freezingLevel),
-    rank
-  }
+  return { rate, hail, snow: snowShare(altitude, nodes.freezingLevel), rank }
 }
