@@ -24,6 +24,7 @@ import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import type { GroundMask } from './maps/GroundMask'
 import type { GroundMaps } from './maps/GroundMaps'
+import { groundZone } from './tsl/groundRules'
 import { groundSurface } from './tsl/groundSurface'
 import {
   FOAM,
@@ -79,14 +80,14 @@ export function terrainMaterial(
 
   const handed = {
     place: handedOn<Vec3>('vec3', 'Place'),
-    texels: handedOn<Vec2>('vec2', 'Texels'),
+    texels: handedOn<Vec4>('vec4', 'Texels'),
     pages: handedOn<Vec4>('vec4', 'Pages'),
     blend: handedOn<Vec4>('vec4', 'Blend')
   }
   material.positionNode = Fn(() => {
     const vertex: TileVertex = tileVertex(atlas, uniforms, figure, resolution, detail)
     handed.place.assign(vertex.place)
-    handed.texels.assign(vertex.texels)
+    handed.texels.assign(vec4(vertex.texels, groundZone(vertex.up.dot(pole))))
     handed.pages.assign(vertex.pages)
     handed.blend.assign(vertex.blend)
     return vertex.position
@@ -96,7 +97,7 @@ export function terrainMaterial(
   const { width, height } = atlas.surface
   const face = blend.z.round().toConst('face') as Float
   // Samples at a tile's edge may lie beyond it, where another page is.
-  const inPage = texels.clamp(0, atlas.surfaceSide - 1).toConst('inPage') as Vec2
+  const inPage = texels.xy.clamp(0, atlas.surfaceSide - 1).toConst('inPage') as Vec2
   /** Texels of a texture of pages: of the tile's own page, and by its morph of its parent's. */
   const ofPages = (map: Texture, name: string): Vec4 => {
     const page = texture(map) as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } }
@@ -137,6 +138,7 @@ export function terrainMaterial(
       climate: blend.y,
       up,
       pole,
+      zone: texels.zw,
       cosSlope,
       hollow: blend.w.oneMinus()
     },
@@ -161,8 +163,8 @@ export function terrainMaterial(
   // Shadow maps ask for its alpha, and need not wait for the rest.
   material.colorNode = Fn(({ material: drawn }: NodeBuilder) => {
     if (isShadowPass(drawn)) return vec4(1)
-    // Ahead of the branches of water: each would find waves and normals anew.
-    ;(litView as unknown as { toStack(): void }).toStack()
+    // Ahead of the branches of water: each would find waves and normals anew. Waves ahead of stones, which wait in registers else.
+    for (const node of [sea.waves, litView] as unknown as { toStack(): void }[]) node.toStack()
     const made = surface.color
     const color = (picture === null
       ? made
@@ -187,6 +189,6 @@ export function terrainMaterial(
   material.normalNode = litView
   material.ground = transformNormalToView(normal) as unknown as Vec3
   const water = { cover, normal: litView, variance: sea.variance }
-  material.emissiveNode = new WaterMirrorNode(atmosphere, water)
+  material.mirror = new WaterMirrorNode(atmosphere, water)
   return material
 }

@@ -193,8 +193,11 @@ function isBelowHorizon(
   viewer: Viewer,
   radius: number
 ): boolean {
+  const cosine = viewer.direction.dot(direction)
+  // Most tiles are this side of it: no arccosine for them.
+  if (cosine >= viewer.cosHorizon) return false
   const highest = Math.max(ground, viewer.seaLevel)
-  const angle = Math.acos(Math.min(Math.max(viewer.direction.dot(direction), -1), 1)) - spread
+  const angle = Math.acos(Math.max(cosine, -1)) - spread
   if (angle <= viewer.horizon) return false
   return angle > viewer.horizon + horizonAngle(1 + Math.max(highest, 0) / radius, viewer.occluder)
 }

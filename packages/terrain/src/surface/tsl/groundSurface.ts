@@ -1,4 +1,4 @@
-import { float, mix, smoothstep, vec3 } from 'three/tsl'
+import { Fn, If, float, mix, smoothstep, vec3 } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 import type { GroundMaps } from '../maps/GroundMaps'
 import { grainAt } from './grain'
@@ -115,12 +115,18 @@ export function groundSurface(
   const forest = mix(meadow, floor, tone.mul(0.2).add(0.85).clamp(0, 1))
   const desert = color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony)
   const scree = color(SCREE).mul(tone.mul(0.4).add(1)).mul(stony)
-  // What high water left lies in strands, a metre above the sea.
-  const tangle = blade.mul(0.7).add(tuft.mul(0.7)).toConst('tangle')
-  const washed = overSea.add(tuft.mul(0.25)).add(patch.mul(0.5)).toConst()
-  const strand = smoothstep(0.6, 0.9, washed).mul(smoothstep(1.1, 1.5, washed).oneMinus())
-  const seaweed = strand.mul(smoothstep(0.02, 0.25, tangle)).mul(0.85)
-  const sand = mix(color(SAND).mul(stone.mul(0.14).add(1)), color(SEAWEED), seaweed)
+  const tangle = blade.mul(0.7).add(tuft.mul(0.7)).toConst('tangle') as Float
+  const sand = Fn(() => {
+    const beach = color(SAND).toVar('beach') as unknown as Vec3 & { assign(value: Vec3): void }
+    If(inland.lessThan(1), () => {
+      // What high water left lies in strands, a metre above the sea.
+      const washed = overSea.add(tuft.mul(0.25)).add(patch.mul(0.5)).toConst()
+      const strand = smoothstep(0.6, 0.9, washed).mul(smoothstep(1.1, 1.5, washed).oneMinus())
+      const seaweed = strand.mul(smoothstep(0.02, 0.25, tangle)).mul(0.85)
+      beach.assign(mix(beach.mul(stone.mul(0.14).add(1)), color(SEAWEED), seaweed))
+    })
+    return beach
+  })() as unknown as Vec3
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
   const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
   const mapped = maps === null ? null : maps.groundAt(place, layers, colors)

@@ -30,6 +30,8 @@ export interface TileVertex {
   readonly place: Vec3
   /** Texels from the first one of a page for pixels. */
   readonly texels: Vec2
+  /** Geodetic up there. */
+  readonly up: Vec3
   /** First texels of the tile's page (xy), and of its quarter of the parent's (zw). */
   readonly pages: Vec4
   /** Share of the parent's page (x), climate (y), face of the cube (z), and share of the sky (w). */
@@ -115,6 +117,7 @@ export function tileVertex(
     position,
     place: tileOffset.xyz.add(subpoint),
     texels: moved.mul(density),
+    up,
     pages: vec4(
       firstTexel(own, columns, surfaceSide),
       firstTexel(parent, columns, surfaceSide).add(inParent.mul(density / 2))
