@@ -3,10 +3,10 @@ import {
   If,
   float,
   mix,
-  positionViewDirection,
   sRGBTransferEOTF,
   texture,
   transformNormalToView,
+  varying,
   varyingProperty,
   vec2,
   vec3,
@@ -20,7 +20,7 @@ import type { TerrainUniforms } from '../TerrainUniforms'
 import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import { faceAxes } from '../tiles/tsl/cubeSphere'
 import type { ShaderFigure } from '../tiles/tsl/figure'
-import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
+import { tilePages, tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import type { GroundMask } from './maps/GroundMask'
 import type { GroundMaps } from './maps/GroundMaps'
@@ -35,7 +35,7 @@ import {
   waterFresnel,
   windyVariance
 } from './tsl/seaSurface'
-import { GroundMaterial } from './GroundMaterial'
+import { GroundMaterial, viewDirection } from './GroundMaterial'
 import { WaterMirrorNode } from './WaterMirrorNode'
 
 /** True of the material that three draws shadow maps with. */
@@ -81,19 +81,18 @@ export function terrainMaterial(
   const handed = {
     place: handedOn<Vec3>('vec3', 'Place'),
     texels: handedOn<Vec4>('vec4', 'Texels'),
-    pages: handedOn<Vec4>('vec4', 'Pages'),
     blend: handedOn<Vec4>('vec4', 'Blend')
   }
   material.positionNode = Fn(() => {
     const vertex: TileVertex = tileVertex(atlas, uniforms, figure, resolution, detail)
     handed.place.assign(vertex.place)
     handed.texels.assign(vec4(vertex.texels, groundZone(vertex.up.dot(pole))))
-    handed.pages.assign(vertex.pages)
     handed.blend.assign(vertex.blend)
     return vertex.position
   })()
 
-  const { place: offset, texels, pages, blend } = handed
+  const { place: offset, texels, blend } = handed
+  const pages = varying(tilePages(atlas, resolution)).setInterpolation('flat') as unknown as Vec4
   const { width, height } = atlas.surface
   const face = blend.z.round().toConst('face') as Float
   // Samples at a tile's edge may lie beyond it, where another page is.
@@ -173,7 +172,7 @@ export function terrainMaterial(
       assign(value: Vec3): void
     }
     If(cover.greaterThan(0), () => {
-      const cosViewer = litView.dot(positionViewDirection).max(0).toConst() as Float
+      const cosViewer = litView.dot(viewDirection()).max(0).toConst() as Float
       const entering = waterFresnel(cosViewer, sea.variance).oneMinus()
       color.assign(mix(color, waterColor(color, depth).mul(entering), cover))
       If(footprint.lessThan(FOAM_GONE), () => {
