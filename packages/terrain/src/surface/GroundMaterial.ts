@@ -15,7 +15,6 @@ import {
   MeshStandardNodeMaterial,
   PhysicalLightingModel,
   type LightingModelDirectInput,
-  type Node,
   type NodeBuilder
 } from 'three/webgpu'
 import type { Float, Vec3 } from '../tsl-types'
@@ -73,14 +72,8 @@ class GroundLightingModel extends PhysicalLightingModel {
   #sunlight: Variable | null = null
   #mirrors = false
 
-  /**
-   * @param ground - Normal of the ground without its stones, in the view.
-   * @param mirror - Light that is mirrored besides; null for none.
-   */
-  constructor(
-    readonly ground: Vec3,
-    readonly mirror: Node | null
-  ) {
+  /** @param ground - Normal of the ground without its stones, in the view. */
+  constructor(readonly ground: Vec3) {
     super()
   }
 
@@ -146,13 +139,6 @@ class GroundLightingModel extends PhysicalLightingModel {
     if (this.#mirrors) super.ambientOcclusion(builder)
     else indirectDiffuse.assign(indirectDiffuse.mul(ambientOcclusion))
   }
-
-  /** Adds what is mirrored last of all: the sky's look-ups need registers that surface and lights take before. */
-  override finish(builder: NodeBuilder): void {
-    super.finish(builder)
-    const { outgoingLight } = builder.context as { outgoingLight: Variable }
-    if (this.mirror !== null) outgoingLight.addAssign(this.mirror as Vec3)
-  }
 }
 
 /** Standard material of ground and water: highlights on water are those of water, half as bright as of other things. */
@@ -170,11 +156,8 @@ export class GroundMaterial extends MeshStandardNodeMaterial {
   /** Share of a pixel that is water; null for none. */
   water: Float | null = null
 
-  /** Light that is mirrored, besides that of lights; null for none. */
-  mirror: Node | null = null
-
   override setupLightingModel(): GroundLightingModel {
-    return new GroundLightingModel(this.ground ?? normalView, this.mirror)
+    return new GroundLightingModel(this.ground ?? normalView)
   }
 
   override setupSpecular(): void {

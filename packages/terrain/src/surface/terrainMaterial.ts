@@ -162,8 +162,8 @@ export function terrainMaterial(
   // Shadow maps ask for its alpha, and need not wait for the rest.
   material.colorNode = Fn(({ material: drawn }: NodeBuilder) => {
     if (isShadowPass(drawn)) return vec4(1)
-    // Ahead of the branches of water: each would find waves and normals anew. Waves ahead of stones, which wait in registers else.
-    for (const node of [sea.waves, litView] as unknown as { toStack(): void }[]) node.toStack()
+    // Ahead of the branches of water: each would find waves and normals anew.
+    ;(litView as unknown as { toStack(): void }).toStack()
     const made = surface.color
     const color = (picture === null
       ? made
@@ -188,6 +188,6 @@ export function terrainMaterial(
   material.normalNode = litView
   material.ground = transformNormalToView(normal) as unknown as Vec3
   const water = { cover, normal: litView, variance: sea.variance }
-  material.mirror = new WaterMirrorNode(atmosphere, water)
+  material.emissiveNode = new WaterMirrorNode(atmosphere, water)
   return material
 }

@@ -38,24 +38,23 @@ function altitudeRow({ thickness }: AtmosphereUniforms, altitude: Float): Float 
   return altitude.div(thickness).clamp().sqrt()
 }
 
-/**
- * A function that reads a tile of the diffuse-light table at an altitude and angle of the light, or the tile on its right where `isNext` is 1.
- */
+/** A function that reads a tile of the diffuse-light table at an altitude and angle of the light. */
 export function diffuseLightReader(
   uniforms: AtmosphereUniforms,
   table: Table,
   altitude: Float,
   cosLight: Float
-): (tile: number, isNext?: Float) => Vec4 {
+): (tile: number) => Vec4 {
   const uv = vec2(lightColumn(cosLight), altitudeRow(uniforms, altitude))
     .mul(vec2(COLUMNS - 1 - 2 * INSET, ROWS - 1 - 2 * INSET))
     .add(0.5 + INSET)
     .div(vec2(COLUMNS * TILE_COLUMNS, ROWS * TILE_ROWS))
     .toConst()
-  return (tile, isNext) => {
-    const column = (tile % TILE_COLUMNS) / TILE_COLUMNS
-    const row = Math.floor(tile / TILE_COLUMNS) / TILE_ROWS
-    const corner = vec2(isNext?.div(TILE_COLUMNS).add(column) ?? column, row)
+  return tile => {
+    const corner = vec2(
+      (tile % TILE_COLUMNS) / TILE_COLUMNS,
+      Math.floor(tile / TILE_COLUMNS) / TILE_ROWS
+    )
     return table.sample(tile === 0 ? uv : uv.add(corner))
   }
 }

@@ -1,10 +1,10 @@
-import { step } from 'three/tsl'
+import { float } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import type { Table } from '../../tables/TableAtlas'
 import { RADIANCE_SCALE } from '../../tables/tableSizes'
 import type { Float, Vec4 } from '../../tsl-types'
 import { diffuseLightReader, diffuseMoments } from './diffuseLight'
-import { applyMoments, momentBasis, SH0, SH1, SH20 } from './moments'
+import { applyMoments, momentBasis } from './moments'
 
 /** A₁/A₀ and A₂/A₀ of the clamped cosine. */
 const COSINE_1 = 2 / 3
@@ -33,17 +33,17 @@ export function skyIrradiance(
 ): Vec4 {
   const moments = diffuseMoments(uniforms, table, altitude, cosLight)
   const read = diffuseLightReader(uniforms, table, altitude, cosLight)
-  const { m00, m10, m20 } = moments
-  const facesDown = step(cosNormal, -1e-7).toConst() as Float
-  const basis = momentBasis(cosNormal, cosLight, cosNormalLight)
-  const lobe = applyMoments(moments, basis, COSINE_1, COSINE_2).mul(Math.PI)
-  // The lobe about the vertical, whose other functions are 0.
-  const approximate = m00
-    .mul(Math.PI * SH0)
-    .add(m10.mul(facesDown.mul(-2).add(1).mul(Math.PI * COSINE_1 * SH1)))
-    .add(m20.mul(2 * Math.PI * COSINE_2 * SH20))
-  const missing = read(6, facesDown).sub(approximate)
-  return lobe
+  const facesUp = cosNormal.greaterThanEqual(0).toConst()
+  const up = read(6).toConst()
+  const down = read(7).toConst()
+  const horizontal = facesUp.select(float(1), float(-1)).toConst() as Float
+  const lobe = (cosine: Float, cosineLight: Float): Vec4 =>
+    applyMoments(moments, momentBasis(cosine, cosLight, cosineLight), COSINE_1, COSINE_2).mul(
+      Math.PI
+    )
+  const approximate = lobe(horizontal, horizontal.mul(cosLight))
+  const missing = facesUp.select(up, down).sub(approximate)
+  return lobe(cosNormal, cosNormalLight)
     .add(missing.mul(cosNormal.mul(cosNormal)))
     .max(0)
     .div(RADIANCE_SCALE)

@@ -34,8 +34,6 @@ export interface SeaSurface {
   readonly slope: Vec3
   /** Variance of the slopes that no wave shows. */
   readonly variance: Float
-  /** Slopes and their variance, found once. */
-  readonly waves: Vec4
 }
 
 /** Change of the slopes' variance by the climate's noise [–]. 0: the sun's glint from orbit is without streaks of wind (*Terrain*). */
@@ -101,7 +99,7 @@ export function seaSurface(place: SeaPlace, seaVariance: Float, seconds: Float):
     })
     return sum
   })().toConst('sea') as unknown as Vec4
-  return { cover, slope: waves.xyz.mul(cover), variance: seaVariance.sub(waves.w), waves }
+  return { cover, slope: waves.xyz.mul(cover), variance: seaVariance.sub(waves.w) }
 }
 
 /**
