@@ -20,11 +20,11 @@ const HASTY = 5
 const FEW_PAGES = 6
 
 /**
- * Longest edge of a triangle over its distance: a tile is no nearer than one and a half of its diagonals, which are twelve cells long. Where pages
+ * Longest edge of a triangle over its distance: a tile is no nearer than 1.2 of its diagonals, which are twelve cells long. Where pages
  * are missing it may be longer; no more than so from afar, where it counts.
  */
-const LONGEST_EDGE = 1 / 18
-const LONGEST_HASTY = 4 / 18
+const LONGEST_EDGE = 1 / 14.4
+const LONGEST_HASTY = 4 / 14.4
 
 /** Pages drawn for a camera over the made-up planet, each of which costs as much as the camera's picture. */
 const COSTLY_PAGES = 24

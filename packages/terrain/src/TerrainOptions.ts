@@ -51,7 +51,7 @@ export const SETTINGS = [
 /** Options that are left out. */
 export const DEFAULTS: Required<TerrainOptions> = {
   resolution: 12,
-  detail: 1.5,
+  detail: 1.2,
   imagery: null,
   imageAlbedo: 1,
   maps: null,

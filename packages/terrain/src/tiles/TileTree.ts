@@ -10,6 +10,12 @@ const FORGET_AFTER = 240
 /** Selections between two searches for tiles to forget. */
 const FORGET_EVERY = 60
 
+/**
+ * Factor on the distance at which a tile out of view is split, which casts shadows alone: two levels coarser. 1: at eye height there is no room for
+ * the pages of all of them, and ground in view is left coarse (*Terrain*, `castShadow`).
+ */
+const UNSEEN = 0.25
+
 /** Tiles chosen for a viewer. */
 export interface TileSelection {
   /** Tiles in view first, then those out of it that may cast shadows into it. */
@@ -91,7 +97,7 @@ export class TileTree {
         tile.lastDrawn = this.#selections
         const distance = distanceTo(tile, viewer.datumPoint)
         tile.distance = distance
-        const range = this.#ranges[tile.level + 1]
+        const range = this.#ranges[tile.level + 1] * (isVisible ? 1 : UNSEEN)
         const isNear = tile.level < this.finestLevel && distance < range
         const isShown = !isPaged || (tile.slot >= 0 && tile.fade === 0)
         if (isNear && isShown && taken + 4 <= most) {
