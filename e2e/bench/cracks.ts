@@ -20,11 +20,11 @@ const HASTY = 5
 const FEW_PAGES = 6
 
 /**
- * Longest edge of a triangle over its distance: a tile is no nearer than one and a half of its diagonals, which are twelve cells long. Where pages
+ * Longest edge of a triangle over its distance: a tile is no nearer than 1.2 of its diagonals, which are twelve cells long. Where pages
  * are missing it may be longer; no more than so from afar, where it counts.
  */
-const LONGEST_EDGE = 1 / 18
-const LONGEST_HASTY = 4 / 18
+const LONGEST_EDGE = 1 / 14.4
+const LONGEST_HASTY = 4 / 14.4
 
 /** Pages drawn for a camera over the made-up planet, each of which costs as much as the camera's picture. */
 const COSTLY_PAGES = 24
@@ -39,6 +39,12 @@ export interface Crack {
   readonly latitude: number
   readonly height: number
   readonly pixels: number
+  /** First of them, column and row. */
+  readonly first: readonly [number, number]
+  /** Camera: vertical field of view [°] and quaternion; and whether all pages were there. */
+  readonly fov: number
+  readonly rotation: readonly number[]
+  readonly isFull: boolean
 }
 
 /** Result of a search. */
@@ -211,6 +217,7 @@ class CrackHunt {
       const over = position.lengthSq() - 1
       const surelyOver = position.lengthSq() - (1 - sagitta) ** 2
       let [pixels, limb] = [0, 0]
+      let first: [number, number] = [0, 0]
       for (let y = 0; y < HEIGHT; y++) {
         for (let x = 0; x < WIDTH; x++) {
           ray.copy(forward).negate()
@@ -220,13 +227,19 @@ class CrackHunt {
           if (down <= 0 || down * down <= ray.lengthSq() * over) continue
           this.pixels++
           if (data[4 * ((top + y) * stride + left + x) + 1] !== 0) continue
-          if (down * down > ray.lengthSq() * surelyOver) pixels++
-          else limb++
+          if (down * down > ray.lengthSq() * surelyOver) {
+            if (pixels === 0) first = [x, y]
+            pixels++
+          } else limb++
         }
       }
       this.cameras++
       if (limb > 0 && pixels === 0) this.atLimb++
-      if (pixels > 0) this.cracks.push({ ground: this.ground, ...place, pixels })
+      if (pixels > 0) {
+        const [fov, rotation] = [camera.fov, camera.quaternion.toArray()]
+        const isFull = edge === LONGEST_EDGE
+        this.cracks.push({ ground: this.ground, ...place, pixels, first, fov, rotation, isFull })
+      }
     }
   }
 
@@ -287,8 +300,8 @@ export async function findCracks(
 /** Lines of a report. */
 export function crackLines({ cameras, pixels, seconds, cracks, atLimb }: CrackSearch): string {
   const found = cracks.map(
-    ({ ground, longitude, latitude, height, pixels: missing }) =>
-      `  ${ground}: ${missing} pixels from ${longitude}°, ${latitude}°, ${height.toPrecision(6)} m`
+    ({ ground, longitude, latitude, height, pixels: missing, ...shot }) =>
+      `  ${ground}: ${missing} pixels from ${longitude}°, ${latitude}°, ${height} m, ${JSON.stringify(shot)}`
   )
   return [
     `cracks         ${cracks.length} of ${cameras} cameras, ${(pixels / 1e6).toFixed(1)} million pixels below the horizon, ${seconds.toFixed(0)} s; at the limb alone ${atLimb}`,

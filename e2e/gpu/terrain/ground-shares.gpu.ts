@@ -5,6 +5,7 @@ import type { Grain } from '../../../packages/terrain/src/surface/tsl/grain'
 import {
   groundClimate,
   groundRules,
+  groundZone,
   type GroundPlace
 } from '../../../packages/terrain/src/surface/tsl/groundRules'
 import { sharesOf } from '../../../packages/terrain/src/surface/tsl/groundShares'
@@ -52,6 +53,7 @@ gpuTest('the ground consists of the same materials on the CPU and the GPU', asyn
         patch: y,
         climate: z,
         pole: vec3(0, 0, 1),
+        zone: groundZone(w),
         up: vec3(level, 0, w),
         normal: vec3(level.mul(cosine).add(w.mul(sine)), 0, w.mul(cosine).sub(level.mul(sine))),
         cosSlope: float(Math.cos(tilt)),

@@ -11,7 +11,7 @@ import { isPageSource, type PageSource } from './pages/PageSource'
 export interface TerrainOptions {
   /** Cells along a tile's edge, even, in [4, 128], default 12: 16 has finer ridges, for an eighth more time at eye height. */
   resolution?: number
-  /** Distance at which a tile is split, in diagonals of it, in [1.2, 4], default 1.5. */
+  /** Distance at which a tile is split, in diagonals of it, in [1.2, 4], default 1.2: more has finer ridges, and as many more tiles by its square. */
   detail?: number
   /** Pictures of the ground, such as `ImageTiles`, in place of its made-up colours; null, the default, for none. */
   imagery?: PageImages | null
@@ -51,7 +51,7 @@ export const SETTINGS = [
 /** Options that are left out. */
 export const DEFAULTS: Required<TerrainOptions> = {
   resolution: 12,
-  detail: 1.5,
+  detail: 1.2,
   imagery: null,
   imageAlbedo: 1,
   maps: null,

@@ -10,7 +10,7 @@ import { morphStart } from '../src/tiles/tsl/tileVertex'
 
 const earth = Ellipsoid.WGS84
 const source = new MountainHeights({ seed: 513 })
-const DETAIL = 1.5
+const DETAIL = 1.2
 /** Bounds alone: which tiles are split does not depend on heights. */
 const bounds = {
   lowest: source.lowest,

@@ -97,7 +97,8 @@ describe('tiles of a plane', () => {
       shadowDistance: 0,
       direction: new Vector3(0, 1, 0),
       occluder: 1,
-      horizon: Infinity
+      horizon: Infinity,
+      cosHorizon: -1
     }
     const { tiles } = tree.select(viewer, 1e5, noTiles(), false)
     const area = tiles.reduce((sum, { radius }) => sum + 2 * radius ** 2, 0)

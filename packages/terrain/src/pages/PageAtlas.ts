@@ -26,8 +26,8 @@ const ENOUGH_PAGES = 1100
 const bytesOfPage = (resolution: number, density: number): number =>
   TEXEL_BYTES * ((resolution + 1) ** 2 + (density * resolution + 1) ** 2)
 
-/** Texels of a page along its edge, for pixels: one is two to four pixels wide at 1080 lines. */
-const FINEST_TEXELS = 128
+/** Texels of a page along its edge, for pixels: one is two to four pixels wide at 1080 lines, as tiles are seen at a `detail` of 1.2. */
+const FINEST_TEXELS = 132
 
 /** Texels of a page per cell of its tile, for pixels: fewer if there is not the memory. */
 function densityOf(resolution: number, bytes: number): number {

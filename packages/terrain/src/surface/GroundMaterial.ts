@@ -1,11 +1,11 @@
-import { airAtVertices } from '@welkin/atmosphere'
+import { airAtVertices, coveredPosition } from '@welkin/atmosphere'
 import {
   BRDF_GGX,
+  Fn,
   diffuseColor,
   float,
   mix,
   normalView,
-  positionViewDirection,
   roughness,
   specularColor,
   specularColorBlended,
@@ -23,6 +23,14 @@ import { WATER_FRESNEL } from './tsl/seaSurface'
 
 /** Reflectance of ground at normal incidence: that of three's standard materials. */
 const GROUND_FRESNEL = 0.04
+
+/** Unit vector to the viewer, in the view; three's own would be one more value that every triangle hands to its pixels. */
+export const viewDirection = (): Vec3 =>
+  Fn(({ camera }: NodeBuilder) =>
+    (camera as unknown as { isOrthographicCamera?: boolean }).isOrthographicCamera === true
+      ? vec3(0, 0, 1)
+      : coveredPosition().negate().normalize()
+  )().toConst() as Vec3
 
 type Variable = Vec3 & { assign(value: Vec3): void; addAssign(value: Vec3): void }
 
@@ -93,8 +101,9 @@ class GroundLightingModel extends PhysicalLightingModel {
     }
     const { directDiffuse, directSpecular } = light.reflectedLight as unknown as ReflectedLight
     const irradiance = color.mul(normalView.dot(direction).clamp()).toConst() as Vec3
-    const halfway = direction.add(positionViewDirection).normalize()
-    const slant = positionViewDirection.dot(halfway).clamp().oneMinus().toConst() as Float
+    const toViewer = viewDirection()
+    const halfway = direction.add(toViewer).normalize()
+    const slant = toViewer.dot(halfway).clamp().oneMinus().toConst() as Float
     const square = slant.mul(slant).toConst()
     const reflectance = specularColor as unknown as Vec3
     // Schlick's, of the light that enters.
@@ -104,8 +113,9 @@ class GroundLightingModel extends PhysicalLightingModel {
       lightDirection: direction,
       f0: reflectance,
       f90: float(1),
-      roughness
-    })
+      roughness,
+      viewDirection: toViewer
+    } as never)
     directSpecular.addAssign(irradiance.mul(highlight as unknown as Vec3))
   }
 

@@ -34,14 +34,14 @@ export const DRY_CLIMATE = 1.4
 export const DRY_WOODS = 1.4
 
 /** Part of the patches that is open where it is neither wet nor dry, over half of them [–]. */
-export const OPEN = 0.15
+export const OPEN = 0.05
 
 /** Moisture that land just above the sea lacks [–], and heights over it between which it does [m]: open plains below woods. */
 export const LOWLAND_DRYNESS = 0.4
 export const LOWLAND = [60, 420] as const
 
-/** Moisture that a meadow lacks of what a wood has at least [–]. */
-export const MOIST = 0.2
+/** Moisture that a meadow lacks of what a wood has at least [–]. More: woods have no edges from 1 km and 10 km (*Terrain*). */
+export const MOIST = 0.1
 
 /** Slopes between which rock comes, and what patches change of them [1 − cosine]. */
 export const ROCK_STEEPNESS = [0.13, 0.24] as const

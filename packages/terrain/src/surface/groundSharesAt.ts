@@ -5,11 +5,11 @@ import { fractalSum } from '../noise/cpu/fractalSum'
 import type { Terrain } from '../Terrain'
 import { figureOf, poleOf, worldToGround } from '../tiles/cpu/figure'
 import { groundShares, type SharesOnCPU } from './cpu/groundRules'
-import { CLIMATE, PATCHES } from './cpu/surfaceNoise'
+import { BROAD, BROAD_PATCHES, CLIMATE, PATCHES } from './cpu/surfaceNoise'
 
 /** Shares of materials of the ground at a place [–], each in [0, 1], with a sum of 1. */
 export interface GroundShares extends SharesOnCPU {
-  /** Noise about 0, from 4 km to 64 m, by which one material gives way to another. */
+  /** Noise about 0, from 32 km to 64 m, by which one material gives way to another. */
   readonly patch: number
   /** Noise about 0, from 1,050 km to 16 km: wet country below, dry country above. */
   readonly climate: number
@@ -43,7 +43,8 @@ export function groundSharesAt(terrain: Terrain, position: Vector3): GroundShare
   poleOf(atmosphere, pole)
   const { x, y, z } = place
   const seed = source.seed ?? 0
-  const patch = fractalSum(x, y, z, PATCHES, seed, sum).value
+  const broad = fractalSum(x, y, z, BROAD_PATCHES, seed, sum).value
+  const patch = fractalSum(x, y, z, PATCHES, seed, sum).value + BROAD * broad
   const climate = fractalSum(x, y, z, CLIMATE, seed, sum).value
   const { height, gradient } = source.sampleAt(place, sample)
   gradient.addScaledVector(up, -gradient.dot(up))

@@ -3,10 +3,10 @@ import {
   If,
   float,
   mix,
-  positionViewDirection,
   sRGBTransferEOTF,
   texture,
   transformNormalToView,
+  varying,
   varyingProperty,
   vec2,
   vec3,
@@ -20,10 +20,11 @@ import type { TerrainUniforms } from '../TerrainUniforms'
 import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import { faceAxes } from '../tiles/tsl/cubeSphere'
 import type { ShaderFigure } from '../tiles/tsl/figure'
-import { tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
+import { tilePages, tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import type { GroundMask } from './maps/GroundMask'
 import type { GroundMaps } from './maps/GroundMaps'
+import { groundZone } from './tsl/groundRules'
 import { groundSurface } from './tsl/groundSurface'
 import {
   FOAM,
@@ -34,7 +35,7 @@ import {
   waterFresnel,
   windyVariance
 } from './tsl/seaSurface'
-import { GroundMaterial } from './GroundMaterial'
+import { GroundMaterial, viewDirection } from './GroundMaterial'
 import { WaterMirrorNode } from './WaterMirrorNode'
 
 /** True of the material that three draws shadow maps with. */
@@ -79,24 +80,23 @@ export function terrainMaterial(
 
   const handed = {
     place: handedOn<Vec3>('vec3', 'Place'),
-    texels: handedOn<Vec2>('vec2', 'Texels'),
-    pages: handedOn<Vec4>('vec4', 'Pages'),
+    texels: handedOn<Vec4>('vec4', 'Texels'),
     blend: handedOn<Vec4>('vec4', 'Blend')
   }
   material.positionNode = Fn(() => {
     const vertex: TileVertex = tileVertex(atlas, uniforms, figure, resolution, detail)
     handed.place.assign(vertex.place)
-    handed.texels.assign(vertex.texels)
-    handed.pages.assign(vertex.pages)
+    handed.texels.assign(vec4(vertex.texels, groundZone(vertex.up.dot(pole))))
     handed.blend.assign(vertex.blend)
     return vertex.position
   })()
 
-  const { place: offset, texels, pages, blend } = handed
+  const { place: offset, texels, blend } = handed
+  const pages = varying(tilePages(atlas, resolution)).setInterpolation('flat') as unknown as Vec4
   const { width, height } = atlas.surface
   const face = blend.z.round().toConst('face') as Float
   // Samples at a tile's edge may lie beyond it, where another page is.
-  const inPage = texels.clamp(0, atlas.surfaceSide - 1).toConst('inPage') as Vec2
+  const inPage = texels.xy.clamp(0, atlas.surfaceSide - 1).toConst('inPage') as Vec2
   /** Texels of a texture of pages: of the tile's own page, and by its morph of its parent's. */
   const ofPages = (map: Texture, name: string): Vec4 => {
     const page = texture(map) as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } }
@@ -137,6 +137,7 @@ export function terrainMaterial(
       climate: blend.y,
       up,
       pole,
+      zone: texels.zw,
       cosSlope,
       hollow: blend.w.oneMinus()
     },
@@ -171,7 +172,7 @@ export function terrainMaterial(
       assign(value: Vec3): void
     }
     If(cover.greaterThan(0), () => {
-      const cosViewer = litView.dot(positionViewDirection).max(0).toConst() as Float
+      const cosViewer = litView.dot(viewDirection()).max(0).toConst() as Float
       const entering = waterFresnel(cosViewer, sea.variance).oneMinus()
       color.assign(mix(color, waterColor(color, depth).mul(entering), cover))
       If(footprint.lessThan(FOAM_GONE), () => {

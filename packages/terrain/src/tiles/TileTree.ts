@@ -10,6 +10,12 @@ const FORGET_AFTER = 240
 /** Selections between two searches for tiles to forget. */
 const FORGET_EVERY = 60
 
+/**
+ * Factor on the distance at which a tile out of view is split, which casts shadows alone: two levels coarser. 1: at eye height there is no room for
+ * the pages of all of them, and ground in view is left coarse (*Terrain*, `castShadow`).
+ */
+const UNSEEN = 0.25
+
 /** Tiles chosen for a viewer. */
 export interface TileSelection {
   /** Tiles in view first, then those out of it that may cast shadows into it. */
@@ -91,7 +97,7 @@ export class TileTree {
         tile.lastDrawn = this.#selections
         const distance = distanceTo(tile, viewer.datumPoint)
         tile.distance = distance
-        const range = this.#ranges[tile.level + 1]
+        const range = this.#ranges[tile.level + 1] * (isVisible ? 1 : UNSEEN)
         const isNear = tile.level < this.finestLevel && distance < range
         const isShown = !isPaged || (tile.slot >= 0 && tile.fade === 0)
         if (isNear && isShown && taken + 4 <= most) {
@@ -193,8 +199,11 @@ function isBelowHorizon(
   viewer: Viewer,
   radius: number
 ): boolean {
+  const cosine = viewer.direction.dot(direction)
+  // Most tiles are this side of it: no arccosine for them.
+  if (cosine >= viewer.cosHorizon) return false
   const highest = Math.max(ground, viewer.seaLevel)
-  const angle = Math.acos(Math.min(Math.max(viewer.direction.dot(direction), -1), 1)) - spread
+  const angle = Math.acos(Math.max(cosine, -1)) - spread
   if (angle <= viewer.horizon) return false
   return angle > viewer.horizon + horizonAngle(1 + Math.max(highest, 0) / radius, viewer.occluder)
 }

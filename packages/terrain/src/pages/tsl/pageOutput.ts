@@ -61,7 +61,7 @@ const upAt = (tile: PageUniforms, { fromCenter }: PagePlace): Vec3 => {
 }
 
 const patchAt = (tile: PageUniforms, { reference, offset }: PagePlace, shortest: Float): Float =>
-  patches(reference, offset, shortest, tile.seed).w
+  patches(reference, offset, shortest, tile.seed)
 
 const climateAt = (tile: PageUniforms, { reference, offset }: PagePlace): Float =>
   climates(reference, offset, tile.shortest, tile.seed).w

@@ -1,5 +1,5 @@
-import { float, smoothstep } from 'three/tsl'
-import type { Float, Vec3 } from '../../tsl-types'
+import { float, smoothstep, vec2 } from 'three/tsl'
+import type { Float, Vec2, Vec3 } from '../../tsl-types'
 import {
   DRY_BEGINS,
   DRY_BELTS,
@@ -53,6 +53,8 @@ export interface GroundPlace extends GrainPlace {
   readonly climate: Float
   /** Unit vector to the north pole. */
   readonly pole: Vec3
+  /** See `groundZone`. */
+  readonly zone: Vec2
   /** Cosine of the ground's slope. */
   readonly cosSlope: Float
   /** Share of the sky that the ground about hides of what its slope leaves: more in hollows. */
@@ -94,18 +96,30 @@ export interface GroundClimate {
   readonly lowland: Float
 }
 
+/**
+ * What latitude makes of the ground, found at vertices: height of the snow line (x) [m] and dryness (y) where it is neither wet nor dry country.
+ *
+ * @param northing - Sine of the latitude.
+ */
+export function groundZone(northing: Float): Vec2 {
+  const sinLatitude = northing.abs().toConst()
+  const square = sinLatitude.mul(sinLatitude).toConst()
+  const line = float(SNOW_LINE).sub(square.mul(square.mul(SNOW_BY_FOURTH).add(SNOW_BY_SQUARE)))
+  const dryness = smoothstep(...DRY_BEGINS, sinLatitude)
+    .mul(smoothstep(...DRY_ENDS, sinLatitude).oneMinus())
+    .mul(DRY_BELTS)
+    .add(LEAST_DRYNESS)
+  return vec2(line, dryness)
+}
+
 /** @param seaLevel - [m] */
 export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimate {
-  const { height, patch, climate, up, pole } = place
+  const { height, patch, climate, up, pole, zone } = place
   const northing = up.dot(pole).toConst() as Float
-  const sinLatitude = northing.abs().toConst()
   const overSea = height.sub(seaLevel).toConst('overSea') as Float
-
-  const square = sinLatitude.mul(sinLatitude).toConst()
   // Ground that falls towards the equator has a normal nearer to it than up is.
   const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign()) as unknown as Float
-  const snowLine = float(SNOW_LINE)
-    .sub(square.mul(square.mul(SNOW_BY_FOURTH).add(SNOW_BY_SQUARE)))
+  const snowLine = zone.x
     .add(climate.mul(DRY_SNOW))
     .add(sunny.mul(SUNNY_SNOW))
     .toConst()
@@ -114,13 +128,7 @@ export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimat
     .add(TREES_BELOW)
     .add(patch.mul(TREES_PATCH))
     .toConst('overTrees') as Float
-  const dryness = smoothstep(...DRY_BEGINS, sinLatitude)
-    .mul(smoothstep(...DRY_ENDS, sinLatitude).oneMinus())
-    .mul(DRY_BELTS)
-    .add(LEAST_DRYNESS)
-    .add(climate.mul(DRY_CLIMATE))
-    .clamp(0, 1)
-    .toConst('dryness') as Float
+  const dryness = zone.y.add(climate.mul(DRY_CLIMATE)).clamp(0, 1).toConst('dryness') as Float
   const lowland = smoothstep(...LOWLAND, overSea)
     .oneMinus()
     .toConst()

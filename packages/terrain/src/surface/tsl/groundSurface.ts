@@ -1,4 +1,4 @@
-import { float, mix, smoothstep, vec3 } from 'three/tsl'
+import { Fn, If, float, mix, smoothstep, vec3 } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 import type { GroundMaps } from '../maps/GroundMaps'
 import { grainAt } from './grain'
@@ -23,12 +23,12 @@ const SCREE = [0.238, 0.228, 0.21]
 const SAND = [0.4, 0.32, 0.215]
 const SEAWEED = [0.03, 0.026, 0.013]
 const DESERT = [0.39, 0.265, 0.15]
-const GRASS = [0.06, 0.09, 0.027]
+const GRASS = [0.066, 0.1, 0.03]
 const SOIL = [0.052, 0.04, 0.027]
 const STRAW = [0.235, 0.195, 0.092]
 const HEATH = [0.056, 0.058, 0.029]
 const FOREST = [0.019, 0.031, 0.013]
-const BROADLEAF = [0.033, 0.045, 0.015]
+const BROADLEAF = [0.036, 0.051, 0.016]
 const SHRUB = [0.026, 0.034, 0.015]
 const SNOW = [0.83, 0.86, 0.9]
 
@@ -79,7 +79,8 @@ export function groundSurface(
   const { relief, spread } = rules
   const layers = paint === null ? rules.layers : paint(rules.layers, relief)
   const { snow, bare, inland, bareness, dryness, woods } = layers
-  const tone = patch.mul(0.9).add(relief.mul(0.35)).toConst('tone')
+  // Hollows are darker: damp, and full of shadows that are smaller than a page's texel.
+  const tone = patch.mul(0.9).add(relief.mul(0.35)).sub(place.hollow.mul(0.9)).toConst('tone')
   // Dark between stones, and between blades.
   const stony = stone.mul(0.45).add(1).toConst('stony')
   const light = blade.mul(1.05).add(tuft.mul(0.2)).toConst('light')
@@ -100,7 +101,7 @@ export function groundSurface(
   const heath = smoothstep(-0.1, 0.35, spots.sub(patch.mul(0.9)).add(high.mul(0.4)).sub(0.4))
   const turf = mix(mix(color(GRASS), color(STRAW), straw), color(HEATH), heath.mul(0.65))
   const blades = turf.mul(light.add(brush.mul(0.35)).add(1).max(0.2))
-  const grassland = mix(blades, color(SOIL), smoothstep(0.14, 0.3, blade.negate()).mul(0.7))
+  const grassland = mix(blades, color(SOIL), smoothstep(0.08, 0.28, blade.negate()).mul(0.8))
   // Shrubs stand in it, more of them towards the woods.
   const shrubs = smoothstep(0.3, 0.5, crown.add(patch.sub(dryness).mul(0.35)).sub(0.05)).toConst(
     'shrubs'
@@ -114,13 +115,19 @@ export function groundSurface(
   const floor = leaves.mul(light.mul(1.3).add(crown.mul(1.2)).add(1).max(0.3))
   const forest = mix(meadow, floor, tone.mul(0.2).add(0.85).clamp(0, 1))
   const desert = color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony)
-  const scree = color(SCREE).mul(tone.mul(0.4).add(1)).mul(stony)
-  // What high water left lies in strands, a metre above the sea.
-  const tangle = blade.mul(0.7).add(tuft.mul(0.7)).toConst('tangle')
-  const washed = overSea.add(tuft.mul(0.25)).add(patch.mul(0.5)).toConst()
-  const strand = smoothstep(0.6, 0.9, washed).mul(smoothstep(1.1, 1.5, washed).oneMinus())
-  const seaweed = strand.mul(smoothstep(0.02, 0.25, tangle)).mul(0.85)
-  const sand = mix(color(SAND).mul(stone.mul(0.14).add(1)), color(SEAWEED), seaweed)
+  const scree = color(SCREE).mul(tone.mul(0.6).add(1).clamp(0.4, 1.3)).mul(stony)
+  const tangle = blade.mul(0.7).add(tuft.mul(0.7)).toConst('tangle') as Float
+  const sand = Fn(() => {
+    const beach = color(SAND).toVar('beach') as unknown as Vec3 & { assign(value: Vec3): void }
+    If(inland.lessThan(1), () => {
+      // What high water left lies in strands, a metre above the sea.
+      const washed = overSea.add(tuft.mul(0.25)).add(patch.mul(0.5)).toConst()
+      const strand = smoothstep(0.6, 0.9, washed).mul(smoothstep(1.1, 1.5, washed).oneMinus())
+      const seaweed = strand.mul(smoothstep(0.02, 0.25, tangle)).mul(0.85)
+      beach.assign(mix(beach.mul(stone.mul(0.14).add(1)), color(SEAWEED), seaweed))
+    })
+    return beach
+  })() as unknown as Vec3
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
   const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
   const mapped = maps === null ? null : maps.groundAt(place, layers, colors)
@@ -129,7 +136,7 @@ export function groundSurface(
 
   // Stones stand out of rock and scree, hardly out of grass, sand and snow.
   const stones = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
-  const ownBump = mix(float(0.05), stones, inland.max(bare)).mul(snow.mul(-0.85).add(1))
+  const ownBump = mix(float(0.05), stones, inland.max(bare)).mul(snow.mul(-0.93).add(1))
   const bump = (mapped === null ? ownBump : ownBump.mul(mapped.share.oneMinus())).toConst('bump')
   const ownRough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
   const rough =
@@ -155,7 +162,7 @@ export function groundSurface(
     .add(boulder.mul(0.5))
     .min(0)
     .mul(bump)
-    .add(blade.min(0).mul(0.5))
+    .add(blade.min(0).mul(0.8))
     .add(crown.min(0).mul(raised))
   const occlusion = hollow.mul(0.9).add(1).max(0.3)
   const slopes = grain

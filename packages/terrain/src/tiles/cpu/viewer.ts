@@ -23,6 +23,8 @@ export interface Viewer {
   readonly occluder: number
   /** Angle at the planet's centre from the viewer to the horizon; infinite in a flat world [rad]. */
   readonly horizon: number
+  /** Its cosine; −1 in a flat world. */
+  readonly cosHorizon: number
 }
 
 /** Angle at the centre of a sphere between a point and the horizon that one sees from it [rad]. */
@@ -63,6 +65,7 @@ export function viewerOf(
   const radius = direction.length()
   // Heights shrink by the largest radius at least, where the ellipsoid is the unit sphere.
   const occluder = 1 + Math.min(lowest, 0) / figure.minimumRadius
+  const horizon = isFlat(figure) ? Infinity : horizonAngle(radius, occluder)
   return {
     position: positionECEF.clone(),
     datumPoint: subpoint.clone().addScaledVector(up, clearance),
@@ -72,6 +75,7 @@ export function viewerOf(
     shadowDistance,
     direction: direction.divideScalar(radius),
     occluder,
-    horizon: isFlat(figure) ? Infinity : horizonAngle(radius, occluder)
+    horizon,
+    cosHorizon: Math.cos(Math.min(horizon, Math.PI))
   }
 }

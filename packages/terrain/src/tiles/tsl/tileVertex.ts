@@ -1,4 +1,4 @@
-import { attribute, ivec2, mix, positionGeometry, step, texture, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, attribute, ivec2, mix, positionGeometry, step, texture, vec2, vec3, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
 import type { PageAtlas } from '../../pages/PageAtlas'
 import type { TerrainUniforms } from '../../TerrainUniforms'
@@ -30,8 +30,8 @@ export interface TileVertex {
   readonly place: Vec3
   /** Texels from the first one of a page for pixels. */
   readonly texels: Vec2
-  /** First texels of the tile's page (xy), and of its quarter of the parent's (zw). */
-  readonly pages: Vec4
+  /** Geodetic up there. */
+  readonly up: Vec3
   /** Share of the parent's page (x), climate (y), face of the cube (z), and share of the sky (w). */
   readonly blend: Vec4
 }
@@ -48,7 +48,7 @@ export interface TileVertex {
  * @see Strugar 2010, "Continuous distance-dependent level of detail for rendering heightmaps", §3.4
  */
 export function tileVertex(
-  { heights, columns, heightSide, surfaceSide, density }: PageAtlas,
+  { heights, columns, heightSide, density }: PageAtlas,
   uniforms: TerrainUniforms,
   figure: ShaderFigure,
   resolution: number,
@@ -115,13 +115,28 @@ export function tileVertex(
     position,
     place: tileOffset.xyz.add(subpoint),
     texels: moved.mul(density),
-    pages: vec4(
-      firstTexel(own, columns, surfaceSide),
-      firstTexel(parent, columns, surfaceSide).add(inParent.mul(density / 2))
-    ),
+    up,
     blend: vec4(morph, mixed.y, tileCube.w, mixed.z)
   }
 }
+
+/**
+ * First texels of a tile's page for pixels (xy), and of its quarter of the parent's (zw): the same for all of an instance.
+ *
+ * @param resolution - Cells along a tile's edge.
+ */
+export const tilePages = (
+  { columns, surfaceSide, density }: PageAtlas,
+  resolution: number
+): Vec4 =>
+  Fn(() => {
+    const { x: own, y: parent, z: quarter } = attribute('tilePage', 'vec4')
+    const inParent = quarterOf(quarter).mul((resolution * density) / 2)
+    return vec4(
+      firstTexel(own, columns, surfaceSide),
+      firstTexel(parent, columns, surfaceSide).add(inParent)
+    )
+  })()
 
 /** First texel of a page. */
 function firstTexel(slot: Float, columns: number, side: number): Vec2 {
