@@ -25,6 +25,8 @@ it('gives each post effect a share of its own, and leaves a pass that it does no
     Occlusion: 'ambient occlusion',
     'TRAA [ RTT ]': 'TRAA',
     TRAA: 'TRAA',
+    'TAAU [ RTT ]': 'TAAU',
+    'TAAU.seed': 'TAAU',
     'DoF [ RTT ]': 'depth of field',
     'DoF [ CoC Blur ]': 'depth of field',
     'SMAANode.weights': 'SMAA',

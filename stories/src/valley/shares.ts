@@ -23,6 +23,7 @@ const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
   ['Occlusion', 'ambient occlusion'],
   ['AO', 'ambient occlusion'],
   ['TRAA', 'TRAA'],
+  ['TAAU', 'TAAU'],
   ['DoF', 'depth of field'],
   ['DepthOfField', 'depth of field'],
   ['MotionBlur', 'motion blur'],
