@@ -105,7 +105,12 @@ export class Valley {
   readonly #glows = [milkyWay(), stars(), airglow()] as const
   readonly #lamps = new StreetLamps(doors())
   readonly #land = new Land(this.#falling, this.#lamps)
-  readonly #village = createVillage(groundHeight, VILLAGE, this.#lamps)
+  readonly #village = createVillage(
+    groundHeight,
+    VILLAGE,
+    this.#lamps,
+    this.#falling.water.snowCoverNode
+  )
   readonly #mirror: LakeMirror
   readonly #water
   readonly #node

@@ -22,7 +22,7 @@ export const weathers = {
   fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...dry },
   clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...dry },
   broken: { cumulus: 0.4, deck: 0.55, cirrus: 0.2, turbidity: 2.5, mist: 0, ...dry },
-  mist: { cumulus: 0.08, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.008, ...dry },
+  mist: { cumulus: 0, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.008, ...dry },
   overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...dry },
   shower: { cumulus: 0.35, deck: 0.45, cirrus: 0.1, turbidity: 2.25, mist: 0, rain: 6, snow: 0 },
   snow: { cumulus: 0.1, deck: 0.95, cirrus: 0, turbidity: 3, mist: 0, rain: 0, snow: 1.5 }
