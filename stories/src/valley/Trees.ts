@@ -22,6 +22,9 @@ const COS_TURN = Math.cos(0.15)
 const COS_ASIDE = Math.cos(1.08)
 const STEEP = 0.6
 
+/** Part of a crown's upper side that snow covers, at most. */
+const SNOWED = 0.7
+
 const _place = new Vector3()
 const _direction = new Vector3()
 
@@ -56,7 +59,7 @@ export class Trees extends Group {
     // Gaps are smaller than pixels elsewhere.
     const far = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
     if (fallen !== undefined) far.colorNode = autumnColor(fallen)
-    near.snowNode = far.snowNode = winter?.snow ?? null
+    near.snowNode = far.snowNode = winter && winter.snow.mul(SNOWED)
     this.levels = geometries.map((geometry, level) => {
       const mesh = new InstancedMesh(geometry, level < leafy ? near : far, trees.length)
       mesh.setColorAt(0, new Color())

@@ -81,7 +81,7 @@ const NIGHT_COMPENSATION = 1.3
 const NIGHT = -10
 
 /** Turn of the sun after which the sky that the lake mirrors beside the picture is drawn anew [degrees]. */
-const MIRRORED_TURN = 0.3
+const MIRRORED_TURN = 0.6
 
 /** Altitude of the lake's water [m]. */
 const ALTITUDE = 600
@@ -226,7 +226,6 @@ export class Valley {
     if (date !== before.date) this.#setDay(this.cycle.hour)
     if (hour !== before.hour) this.cycle.hour = hour
     const fineness = typeof quality === 'string' ? quality : 'low'
-    this.#node.quality = quality
     this.#shafts.quality = SHAFTS[fineness]
     this.#land.setQuality(fineness)
     this.#land.showTrees(trees)
@@ -257,7 +256,8 @@ export class Valley {
 
   #applyWeather(atOnce = false): void {
     const { turbidity, mist } = this.#weather.current
-    const { clouds, cloudShadows, precipitation } = this.#state
+    const { clouds, cloudShadows, precipitation, quality } = this.#state
+    this.#node.quality = this.#weather.qualityOf(quality, this.#state.mist)
     this.#falling.set(this.#falls(), atOnce)
     this.#weather.apply(this.#layers, clouds, this.#state.mist, cloudShadows, precipitation)
     this.#mist.density = this.#state.mist ? mist : 0

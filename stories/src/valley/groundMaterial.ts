@@ -52,7 +52,7 @@ export const FARMED = 40
 const FALLEN_SNOW = 2300
 
 /** Part of a snowed wood that is dark, seen from afar. */
-const WOODS = 0.72
+const WOODS = 0.84
 
 /** Half width of the road from the village to the lake [m]. */
 export const HALF_ROAD = 2.2
@@ -217,7 +217,8 @@ export function groundMaterial(
   const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
   // Of woods one sees the trunks and the undersides of branches, too.
-  const whitened = snow.mul(smoothstep(0.46, 0.3, slope)).mul(forest.mul(-WOODS).add(1))
+  const dark = forest.mul(fine.mul(0.25).add(WOODS)).clamp()
+  const whitened = snow.mul(smoothstep(0.46, 0.3, slope)).mul(dark.oneMinus())
   color = mix(color, white, whitened)
   material.colorNode = color
   material.emissiveNode = lamplight
