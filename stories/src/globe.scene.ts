@@ -73,15 +73,15 @@ export async function createGlobe(
     scene.add(city.object)
     const night = new GlobeNight(atmosphere, () => {
       // #region globe night
-      const sky = [milkyWay(), stars(), moon(), airglow()] as const // far before near
-      atmosphere.add(...sky)
-      const luna = sky[2]
+      const luna = moon()
+      const nightSky = [milkyWay(), stars(), luna, airglow()] as const // far before near
+      atmosphere.add(...nightSky)
       const moonlight = new MoonDirectionalLight(atmosphere, luna)
       const moonlitSky = new SkyLightProbe(atmosphere, luna.source)
       const dark = new NightLightProbe(atmosphere)
       scene.add(moonlight, moonlight.target, moonlitSky, dark)
       // #endregion
-      return { sky, lights: [moonlight, moonlitSky, dark] }
+      return { sky: nightSky, lights: [moonlight, moonlitSky, dark] }
     })
     const weather = addClouds?.(land)
     return {

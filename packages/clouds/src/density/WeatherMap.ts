@@ -67,6 +67,14 @@ const PER_POSITION = perPosition(SIZE, EVEN / MAXIMUM_DISTANCE)
 const FALL_PER_POSITION = perPosition(SIZE, EVEN / FALL_DISTANCE)
 const REGIONAL_PER_POSITION = perPosition(REGIONAL_SIZE, REGIONAL_EVEN)
 
+/** State that maps were drawn for. */
+interface DrawnFor {
+  /** Camera from the planet's centre, in the mapped space [m]. */
+  readonly viewpoint: Vector3
+  /** All else that they depend on, but for the wind. */
+  readonly state: readonly unknown[]
+}
+
 /** A place that a texel of a map stands for. */
 interface PlaceInMap {
   /** Displacement in the plane, and that of the subpoint [m]. */
@@ -99,8 +107,8 @@ export class WeatherMap {
   readonly #regions: LevelTexture<Vec2>
   /** Distance within which texels of the map of regions are about as wide [m]. */
   readonly #even = number()
-  /** What the maps were drawn for: the viewpoint from the planet's centre [m], and all else; null before. */
-  #drawn: { viewpoint: Vector3; state: readonly unknown[] } | null = null
+  /** State that the maps were drawn for last; null before. */
+  #drawn: DrawnFor | null = null
   /** Way of the clouds since then [m]. */
   #drifted = 0
   /** Two directions along the ground at the subpoint, in the mapped space. */
@@ -208,12 +216,10 @@ export class WeatherMap {
     state.push(fadeIn, pixelAngle.value, radius.value)
     this.#drifted += Math.max(...drifts.map(drift => drift.length()))
     _viewpoint.copy(up).multiplyScalar(radius.value + view.height.value)
-    const drawn = this.#drawn
-    const isSame =
-      worldMap === null &&
-      drawn?.viewpoint.distanceTo(_viewpoint)! + this.#drifted < STALE &&
-      state.every((value, i) => value === drawn!.state[i])
-    if (isSame) return false
+    const isSame = (drawn: DrawnFor): boolean =>
+      drawn.viewpoint.distanceTo(_viewpoint) + this.#drifted < STALE &&
+      state.every((value, i) => value === drawn.state[i])
+    if (worldMap === null && this.#drawn !== null && isSame(this.#drawn)) return false
     this.#drawn = { viewpoint: _viewpoint.clone(), state }
     this.#drifted = 0
     return true
