@@ -131,7 +131,7 @@ export function groundMaterial(
   // Each of its many scales is blurred far away: there are coarser ones. The finest are seen along the ground.
   const grazed = picture.clone()
   picture.anisotropy = 1
-  grazed.anisotropy = 8
+  grazed.anisotropy = 4
   for (const each of [picture, grazed]) {
     material.addEventListener('dispose', () => each.dispose())
   }
