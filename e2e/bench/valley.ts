@@ -8,8 +8,8 @@ import { nextFrame, release, type HeadlessDevice } from '../headless/device'
 import { median } from './statistics'
 
 const WARM_UP = 30
-/** Frames of a weather at least: shadows of clouds, the mirrored sky and the air's tables are drawn anew every 30 to 60 of them. */
-const WEATHER_FRAMES = 120
+/** Frames of a measurement at least: shadows of clouds, the mirrored sky and the air's tables are drawn anew every 30 to 60 of them. */
+const LEAST_FRAMES = 120
 /** Time between two frames [s]. */
 const STEP = 1 / 60
 
@@ -105,7 +105,7 @@ export async function timeValley(
     const shares = sharesOf(passes, state).map(([name, ms]) => [name, ms / frames] as const)
     return [shares, median(cpu.slice(WARM_UP))]
   }
-  const often = Math.max(frames, WEATHER_FRAMES)
+  const often = Math.max(frames, LEAST_FRAMES)
   const [features, cpuMs] = await measure({}, often)
   const totalMs = sumOf(features)
   const rows: ValleyCost['rows'] = []
@@ -114,7 +114,7 @@ export async function timeValley(
   }
   const parts: PassTime[] = []
   for (const part of PARTS) {
-    parts.push([part, totalMs - sumOf((await measure({ [part]: false }, frames))[0])])
+    parts.push([part, totalMs - sumOf((await measure({ [part]: false }, often))[0])])
   }
   valley.dispose()
   target.dispose()

@@ -185,11 +185,30 @@ async function touch(page: Page): Promise<void> {
   await touchButtons(page, put)
 }
 
+/** The line that says how one moves goes after a while, and comes back by key and by button. */
+async function helpAgain(page: Page): Promise<void> {
+  const button = page.locator('.welkin-help')
+  const says = async (text: string): Promise<void> =>
+    button.filter({ hasText: text }).waitFor({ timeout: 20_000 })
+  await says('?')
+  report.pass('the line is hidden after a while')
+  await page.keyboard.press('h')
+  await says('WASD')
+  await page.keyboard.press('h')
+  await says('?')
+  await button.click()
+  await says('WASD')
+  await page.keyboard.press('h')
+  await says('?')
+  report.pass('H and a button bring it back')
+}
+
 async function move(browser: Browser, origin: string): Promise<void> {
   const page = await open(browser, `${origin}/index.html`)
   const start = page.url()
   const help = (await page.textContent('.welkin-help')) ?? ''
   report.check(help.includes('WASD'), 'the page says how one moves', help)
+  await helpAgain(page)
   await page.waitForTimeout(700)
   report.check(page.url() === start, 'the address is clean until one moves', page.url())
 

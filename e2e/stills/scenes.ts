@@ -208,6 +208,11 @@ const valleys: ValleyStill[] = [
       depthOfField: true,
       motionBlur: true
     }
+  },
+  {
+    name: 'valley-upscaled',
+    about: 'morning, added up of frames with a quarter of the pixels',
+    valley: { view: 'village', hour: 8, antialiasing: 'taau' }
   }
 ]
 

@@ -18,14 +18,14 @@ import {
 import { shadow } from 'three/tsl'
 import { cloudCover } from './clouds/cloudCover'
 import { createCity } from './globe/city'
-import { GlobeNight } from './globe/GlobeNight'
+import { GlobeNight, type NightFeatures } from './globe/GlobeNight'
 import { createLand, type Land } from './globe/land'
 import { PLACES } from './globe/places'
 import type { PlaceName } from './globe/places'
 import { applyTime } from './scene'
 import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
 
-export interface GlobeArgs extends RendererArgs, TimeArgs {
+export interface GlobeArgs extends RendererArgs, TimeArgs, NightFeatures {
   place: PlaceName
   /** The world's clouds, drawn over the finished picture. */
   clouds: boolean
@@ -74,19 +74,23 @@ export async function createGlobe(
     const night = new GlobeNight(atmosphere, () => {
       // #region globe night
       const luna = moon()
-      atmosphere.add(milkyWay(), stars(), luna, airglow()) // far before near
+      const nightSky = [milkyWay(), stars(), luna, airglow()] as const // far before near
+      atmosphere.add(...nightSky)
       const moonlight = new MoonDirectionalLight(atmosphere, luna)
       const moonlitSky = new SkyLightProbe(atmosphere, luna.source)
       const dark = new NightLightProbe(atmosphere)
       scene.add(moonlight, moonlight.target, moonlitSky, dark)
       // #endregion
-      return [moonlight, moonlitSky, dark]
+      return { sky: nightSky, lights: [moonlight, moonlitSky, dark] }
     })
-    const sky = addClouds?.(land)
+    const weather = addClouds?.(land)
     return {
       place: ({ place }: GlobeArgs) => PLACES[place],
       prepare: () => atmosphere.bake(renderer),
-      apply: (current: GlobeArgs) => applyTime(renderer, air, current),
+      apply(current: GlobeArgs) {
+        applyTime(renderer, air, current)
+        night.show(current)
+      },
       beforeDraw(altitude: number) {
         night.update(camera)
         const { luminanceScale } = atmosphere
@@ -95,7 +99,7 @@ export async function createGlobe(
         city.object.visible = altitude < CITY_CEILING
       },
       dispose() {
-        sky?.dispose()
+        weather?.dispose()
         night.dispose()
         city.dispose()
       }

@@ -12,6 +12,12 @@ const code = storyCode(
   ['globe.scene.ts', 'globe night']
 )
 
+const partOfNight = (name: string): object => ({
+  name,
+  control: 'boolean',
+  table: { category: 'Night sky' }
+})
+
 const meta: Meta<GlobeArgs> = {
   title: 'Globe',
   render: mount(createGlobe, code, ({ clouds }) => String(clouds)),
@@ -26,6 +32,9 @@ const meta: Meta<GlobeArgs> = {
       description: "The world's, drawn over the finished picture",
       control: 'boolean'
     },
+    stars: partOfNight('Stars and Milky Way'),
+    moon: partOfNight('Moon'),
+    airglow: partOfNight('Airglow'),
     ...timeArgTypes,
     ...rendererArgTypes
   },
@@ -35,6 +44,9 @@ const meta: Meta<GlobeArgs> = {
     hour: 22,
     exposure: 0,
     clouds: false,
+    stars: true,
+    moon: true,
+    airglow: true,
     forceWebGL: false,
     path: 'forward',
     frame: false

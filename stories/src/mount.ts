@@ -38,8 +38,9 @@ const STYLE = `
   .welkin-note { position: absolute; left: 12px; bottom: 12px; padding: 6px 10px; border-radius: 6px;
     background: rgb(5 7 10 / 70%); pointer-events: none; transition: opacity .4s }
   .welkin-note progress { width: 140px; height: 6px; margin-right: 8px; accent-color: #8fc7ff }
-  .welkin-help { position: absolute; right: 12px; bottom: 12px; padding: 6px 10px; border-radius: 6px; opacity: 0;
-    background: rgb(5 7 10 / 70%); pointer-events: none; transition: opacity 1s }
+  .welkin-help { position: absolute; right: 12px; bottom: 12px; padding: 6px 10px; border: 0; border-radius: 6px;
+    background: rgb(5 7 10 / 70%); color: inherit; font: inherit; text-align: left; cursor: pointer }
+  .welkin-help[hidden] { display: none }
   .welkin-touch { position: absolute; right: 12px; top: 50%; display: grid; gap: 8px; transform: translateY(-50%) }
   .welkin-touch[hidden] { display: none }
   .welkin-touch button { width: 56px; height: 44px; border: 0; border-radius: 6px; background: rgb(5 7 10 / 55%);
@@ -98,7 +99,7 @@ function start<Args extends RendererArgs>(
   element.className = 'welkin'
   element.innerHTML = `<style>${STYLE}</style><canvas></canvas>
     <div class="welkin-note"><progress max="1"></progress><span>Loading</span></div>
-    <div class="welkin-help"></div>
+    <button class="welkin-help" hidden></button>
     <div class="welkin-touch" hidden></div>
     <details class="welkin-code"><summary>Code</summary><pre></pre></details>`
   element.querySelector('pre')!.textContent = code
@@ -109,6 +110,7 @@ function start<Args extends RendererArgs>(
   let handle: SceneHandle<Args> | undefined
   let disposed = false
   let forgetView: (() => void) | undefined
+  let endHelp: (() => void) | undefined
 
   const resize = (): void => {
     const { clientWidth, clientHeight } = element
@@ -123,6 +125,7 @@ function start<Args extends RendererArgs>(
       disposed = true
       observer.disconnect()
       forgetView?.()
+      endHelp?.()
       void handle?.renderer.setAnimationLoop(null)
       handle?.dispose()
       delete window.welkinScene
@@ -158,7 +161,7 @@ function start<Args extends RendererArgs>(
     const { explorer } = handle
     if (explorer !== undefined && !args.frame) {
       forgetView = keepView(explorer, isFirst)
-      showHelp(element.querySelector<HTMLElement>('.welkin-help')!, explorer)
+      endHelp = showHelp(element.querySelector<HTMLElement>('.welkin-help')!, explorer)
       addTouchButtons(element.querySelector<HTMLElement>('.welkin-touch')!, canvas, explorer)
     }
     resize()

@@ -67,6 +67,11 @@ const meta: Meta<ValleyArgs> = {
       description: 'Sun, moon and stars are as of this day; its time is the hour above'
     },
     latitude: { name: 'Latitude [°]', control: { type: 'range', min: -66, max: 66, step: 1 } },
+    longitude: {
+      name: 'Longitude [°]',
+      control: { type: 'range', min: -180, max: 180, step: 1 },
+      description: 'The hour is solar time, and stays'
+    },
     quality: { name: 'Quality', control: 'select', options: Object.keys(cloudQualities) },
     clouds: part('Clouds'),
     cloudShadows: part("Clouds' shadows"),

@@ -25,6 +25,8 @@ it('gives each post effect a share of its own, and leaves a pass that it does no
     Occlusion: 'ambient occlusion',
     'TRAA [ RTT ]': 'TRAA',
     TRAA: 'TRAA',
+    'TAAU [ RTT ]': 'TAAU',
+    'TAAU.seed': 'TAAU',
     'DoF [ RTT ]': 'depth of field',
     'DoF [ CoC Blur ]': 'depth of field',
     'SMAANode.weights': 'SMAA',
@@ -33,6 +35,8 @@ it('gives each post effect a share of its own, and leaves a pass that it does no
     'Bloom [ High Pass ]': 'bloom',
     'Shown [ RTT ]': 'tone mapping',
     'Welkin.CloudFogLight': 'light of the mist',
+    'Welkin.Precipitation.0': 'rain and snow around the camera',
+    'Welkin.PrecipitationSkylight.0': 'light of rain and snow',
     Else: 'Else'
   }
   for (const [pass, feature] of Object.entries(features)) {

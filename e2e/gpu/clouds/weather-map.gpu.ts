@@ -115,3 +115,40 @@ gpuTest(
   },
   { backends: ['webgpu'] }
 )
+
+gpuTest(
+  'the maps are drawn anew where camera, clouds or layers have gone on, and only there',
+  async t => {
+    const layers = cloudPreset('fairWeather')
+    layers.at(0).wind = { east: 10, north: 0 }
+    const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45, height: 2 })
+    const { field, viewpoint, renderer } = scene
+    const map = new WeatherMap(field)
+    let draws = 0
+    const render = renderer.render.bind(renderer)
+    renderer.render = (...args) => {
+      draws++
+      return render(...args)
+    }
+    const drawn = (seconds: number): number => {
+      scene.update(seconds)
+      draws = 0
+      map.render(renderer, viewpoint.clone().normalize())
+      return draws
+    }
+    const all = drawn(0)
+    expectTrue(all > 0, 'nothing is drawn at first')
+    expectTrue(drawn(0.1) === 0, 'a metre of wind draws them anew')
+    expectTrue(drawn(0.3) === 0, 'three metres of wind draw them anew')
+    expectTrue(drawn(0.5) === all, 'five metres of wind do not')
+    layers.at(0).coverage = 0.6
+    expectTrue(drawn(0.5) === all, 'another coverage does not')
+    expectTrue(drawn(0.5) === 0, 'they are drawn again for nothing')
+    field.atmosphere.place({ longitude: 20, latitude: 45.0001, height: 2 })
+    expectTrue(drawn(0.5) === all, 'eleven metres of way do not')
+    map.dispose()
+    expectTrue(drawn(0.5) === all, 'they are not there after they were freed')
+    map.dispose()
+    scene.dispose()
+  }
+)

@@ -1,5 +1,5 @@
 import { exposureFor } from '@welkin/atmosphere'
-import type { Atmosphere } from '@welkin/atmosphere'
+import type { Airglow, Atmosphere, MilkyWay, Moon, Stars } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import { MathUtils, PerspectiveCamera } from 'three'
 import type { Camera, Light } from 'three'
@@ -13,16 +13,41 @@ const DARKER = 2
 /** Height of the place that a picture from above is exposed for, at most [m]. */
 const EXPOSED_HEIGHT = 10_000
 
+/** Parts of a night sky that one can do without. */
+export interface NightFeatures {
+  /** Stars and the Milky Way. */
+  stars: boolean
+  moon: boolean
+  airglow: boolean
+}
+
+/** Night sky and its lights. */
+export interface Night {
+  readonly sky: readonly [MilkyWay, Stars, Moon, Airglow]
+  readonly lights: readonly Light[]
+}
+
 /** Night over a globe, which is made when it first falls, and exposure for it. */
 export class GlobeNight {
-  #lights: Light[] | undefined
+  #night: Night | undefined
+  #features: NightFeatures = { stars: true, moon: true, airglow: true }
   readonly #below = new PerspectiveCamera()
 
-  /** @param nightfall - Adds what a night has, and answers with its lights. */
+  /** @param nightfall - Adds what a night has. */
   constructor(
     private readonly atmosphere: Atmosphere,
-    private readonly nightfall: () => Light[]
+    private readonly nightfall: () => Night
   ) {}
+
+  /** Switches parts of the night sky on and off; nothing is compiled. */
+  show({ stars, moon, airglow }: NightFeatures): void {
+    this.#features = { stars, moon, airglow }
+    if (this.#night === undefined) return
+    const [galaxy, starlight, luna, glow] = this.#night.sky
+    galaxy.intensity = starlight.intensity = Number(stars)
+    luna.strength = Number(moon)
+    glow.intensity = Number(airglow)
+  }
 
   /** Exposes for the land below a camera. */
   update(camera: Camera): void {
@@ -36,11 +61,13 @@ export class GlobeNight {
     const floor = Math.exp(MathUtils.lerp(low, high, Math.min(part, 1)))
     const exposure = exposureFor(atmosphere, this.#below, { floor }) / 2 ** DARKER
     atmosphere.luminanceScale = 1e-4 * Math.max(exposure, 1)
-    if (exposure > 1) this.#lights ??= this.nightfall()
+    if (exposure <= 1 || this.#night !== undefined) return
+    this.#night = this.nightfall()
+    this.show(this.#features)
   }
 
   dispose(): void {
-    for (const light of this.#lights ?? []) {
+    for (const light of this.#night?.lights ?? []) {
       light.removeFromParent()
       light.dispose()
     }

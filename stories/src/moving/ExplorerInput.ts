@@ -19,7 +19,7 @@ const LEAST_SPEED = 1 / 16
 const MOST_SPEED = 16
 
 /** Elements that take letters; sliders and checkboxes do not. */
-const TYPED =
+export const TYPED =
   'textarea, select, [contenteditable], input:not([type=range], [type=checkbox], [type=radio], [type=button], [type=color])'
 const PRESSED = 'button, summary, a, input'
 

@@ -57,12 +57,14 @@ export class Land extends Group {
     this.clear()
     this.#relief = new Relief(RELIEF[quality])
     const lamplight = this.#lamps.reflected()
-    this.#ground = createGround(QUADS[quality], this.#falling.water, this.#relief, lamplight)
+    const { water } = this.#falling
+    this.#ground = createGround(QUADS[quality], water, this.#relief, lamplight)
     const trees = TREES[quality]
+    const snow = water.snowCoverNode
     this.#trees = [
-      createForest(trees),
-      createGrove(Math.round(trees / 16)),
-      createBirches(Math.round(trees / 48))
+      createForest(trees, snow),
+      createGrove(Math.round(trees / 16), snow),
+      createBirches(Math.round(trees / 48), snow)
     ]
     this.add(this.#ground, ...this.#trees)
     this.showTrees(this.#hasTrees)

@@ -1,7 +1,8 @@
 import { Color, DoubleSide, Group, InstancedMesh, Vector3 } from 'three'
 import type { BufferGeometry, Matrix4, PerspectiveCamera } from 'three'
+import type { Node } from 'three/webgpu'
 import { disposeMeshes } from '../scene'
-import { setFoliage } from './leaves'
+import { autumnColor, fallenLeaves, setFoliage } from './leaves'
 import { VertexLitMaterial } from './VertexLitMaterial'
 
 /** A tree: its place and size, and its brightness over that of its kind. */
@@ -12,14 +13,17 @@ export interface Tree {
 
 /** Distance that the camera moves, and cosine of its turn, before trees are sorted by distance anew [m]. */
 const STEP = 10
-const COS_TURN = Math.cos(0.3)
+const COS_TURN = Math.cos(0.15)
 
 /**
  * Cosine of the angle from the direction of view beyond which trees of the last level are left out: the picture's corners
  * are 51° from it. Of a view that is steeper than this sine, none are.
  */
-const COS_ASIDE = Math.cos(1.3)
+const COS_ASIDE = Math.cos(1.08)
 const STEEP = 0.6
+
+/** Part of a crown's upper side that snow covers, at most. */
+const SNOWED = 0.7
 
 const _place = new Vector3()
 const _direction = new Vector3()
@@ -37,20 +41,25 @@ export class Trees extends Group {
    * @param geometries - Finest to coarsest, with vertex colours.
    * @param distances - Distances from which each but the first is drawn [m].
    * @param leafy - Number of geometries that have leaves with gaps, see {@link setFoliage}.
+   * @param winter - Share of what faces the sky that snow covers, and whether their leaves fall; null for no winter.
    */
   constructor(
     geometries: readonly BufferGeometry[],
     distances: readonly number[],
     trees: readonly Tree[],
-    leafy: number
+    leafy: number,
+    winter: { snow: Node<'float'>; isBare: boolean } | null = null
   ) {
     super()
     this.#trees = trees
     this.#distances = distances
     const near = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
-    setFoliage(near)
+    const fallen = winter?.isBare === true ? fallenLeaves(winter.snow) : undefined
+    setFoliage(near, fallen)
     // Gaps are smaller than pixels elsewhere.
     const far = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
+    if (fallen !== undefined) far.colorNode = autumnColor(fallen)
+    near.snowNode = far.snowNode = winter && winter.snow.mul(SNOWED)
     this.levels = geometries.map((geometry, level) => {
       const mesh = new InstancedMesh(geometry, level < leafy ? near : far, trees.length)
       mesh.setColorAt(0, new Color())

@@ -40,8 +40,9 @@ import { valleyLayers, type Weather, WeatherBlend, type WeatherName } from './we
 /** State of the valley. */
 export interface ValleyState extends ValleyFeatures, ValleyEffects, ValleyFactors {
   weather: WeatherName
-  /** [degrees] */
+  /** Place on the Earth [degrees]. */
   latitude: number
+  longitude: number
   /** A moment of the day, UTC [ms since 1970]. */
   date: number
   /** Solar time at which it begins [h]. */
@@ -79,11 +80,8 @@ const SNOW_COMPENSATION = 0.8
 const NIGHT_COMPENSATION = 1.3
 const NIGHT = -10
 
-/** Longitude of the valley, where the weather has good cumulus [degrees]. */
-const LONGITUDE = 10
-
 /** Turn of the sun after which the sky that the lake mirrors beside the picture is drawn anew [degrees]. */
-const MIRRORED_TURN = 0.3
+const MIRRORED_TURN = 0.6
 
 /** Altitude of the lake's water [m]. */
 const ALTITUDE = 600
@@ -107,7 +105,12 @@ export class Valley {
   readonly #glows = [milkyWay(), stars(), airglow()] as const
   readonly #lamps = new StreetLamps(doors())
   readonly #land = new Land(this.#falling, this.#lamps)
-  readonly #village = createVillage(groundHeight, VILLAGE, this.#lamps)
+  readonly #village = createVillage(
+    groundHeight,
+    VILLAGE,
+    this.#lamps,
+    this.#falling.water.snowCoverNode
+  )
   readonly #mirror: LakeMirror
   readonly #water
   readonly #node
@@ -142,7 +145,8 @@ export class Valley {
     this.#moonShadow = new MoonShadow(moonlight)
     this.#moonlights = [moonlight, air.nightSky[0]] as const
     this.atmosphere = atmosphere
-    atmosphere.place({ longitude: LONGITUDE, latitude: state.latitude, height: ALTITUDE })
+    const { longitude, latitude } = state
+    atmosphere.place({ longitude, latitude, height: ALTITUDE })
     atmosphere.add(this.#style, this.#mist)
     const mistLight = cloudFogLight(this.#mist, node) // where there are no shafts
     scene.add(this.#land, this.#village.object)
@@ -208,17 +212,20 @@ export class Valley {
   set(changes: Partial<ValleyState>, atOnce = false): void {
     const before = { ...this.#state }
     Object.assign(this.#state, changes)
-    const { weather, latitude, date, hour, dayLength, paused, quality } = this.#state
+    const { weather, latitude, longitude, date, hour, dayLength, paused, quality } = this.#state
     const { trees, village, water, environment } = this.#state
     this.#weather.set(weather, atOnce)
     this.cycle.rate = 86_400 / dayLength
     this.cycle.paused = paused
-    this.cycle.latitude = latitude
+    if (latitude !== before.latitude || longitude !== before.longitude) {
+      const { hour } = this.cycle // solar: it stays
+      this.atmosphere.place({ longitude, latitude, height: ALTITUDE })
+      this.cycle.hour = hour
+    }
     // The clock goes on from where these were set.
     if (date !== before.date) this.#setDay(this.cycle.hour)
     if (hour !== before.hour) this.cycle.hour = hour
     const fineness = typeof quality === 'string' ? quality : 'low'
-    this.#node.quality = quality
     this.#shafts.quality = SHAFTS[fineness]
     this.#land.setQuality(fineness)
     this.#land.showTrees(trees)
@@ -249,7 +256,8 @@ export class Valley {
 
   #applyWeather(atOnce = false): void {
     const { turbidity, mist } = this.#weather.current
-    const { clouds, cloudShadows, precipitation } = this.#state
+    const { clouds, cloudShadows, precipitation, quality } = this.#state
+    this.#node.quality = this.#weather.qualityOf(quality, this.#state.mist)
     this.#falling.set(this.#falls(), atOnce)
     this.#weather.apply(this.#layers, clouds, this.#state.mist, cloudShadows, precipitation)
     this.#mist.density = this.#state.mist ? mist : 0

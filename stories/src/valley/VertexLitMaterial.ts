@@ -1,10 +1,25 @@
 import { cloudShadow, CloudShadowNode } from '@welkin/clouds'
 import type { Light } from 'three'
-import { Fn, If, uniform, varying, vec3 } from 'three/tsl'
+import {
+  diffuseColor,
+  Fn,
+  If,
+  mix,
+  normalWorldGeometry,
+  smoothstep,
+  uniform,
+  varying,
+  vec3,
+  vec4
+} from 'three/tsl'
 import { MeshLambertNodeMaterial, PhongLightingModel } from 'three/webgpu'
 import type { LightingModelDirectInput, Node, NodeBuilder, UniformNode } from 'three/webgpu'
 
 type Vec3 = Node<'vec3'>
+
+/** Colour of snow, linear sRGB, and cosines of the slopes between which it comes to lie. */
+const SNOW = [0.78, 0.8, 0.83] as const
+const LYING = [0.12, 0.7] as const
 
 /** Parts of three's light nodes and contexts of which its types have none. */
 interface ShadowedLightNode {
@@ -116,7 +131,18 @@ export class VertexLitMaterial extends MeshLambertNodeMaterial {
     return 'VertexLitMaterial'
   }
 
+  /** Share of what faces the sky that snow covers, in [0, 1]; null for none. */
+  snowNode: Node<'float'> | null = null
+
   override setupLightingModel(): PhongLightingModel {
     return new VertexLightingModel()
+  }
+
+  override setupDiffuseColor(builder: NodeBuilder): void {
+    super.setupDiffuseColor(builder)
+    if (this.snowNode === null) return
+    const { rgb, a } = diffuseColor as unknown as Node<'vec4'>
+    const lying = smoothstep(...LYING, normalWorldGeometry.y).mul(this.snowNode)
+    diffuseColor.assign(vec4(mix(rgb, vec3(...SNOW), lying), a))
   }
 }

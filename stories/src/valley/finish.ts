@@ -6,6 +6,7 @@ import { dof } from 'three/addons/tsl/display/DepthOfFieldNode.js'
 import { fxaa } from 'three/addons/tsl/display/FXAANode.js'
 import { motionBlur } from 'three/addons/tsl/display/MotionBlur.js'
 import { smaa } from 'three/addons/tsl/display/SMAANode.js'
+import { taau } from 'three/addons/tsl/display/TAAUNode.js'
 import { traa } from 'three/addons/tsl/display/TRAANode.js'
 import {
   builtinAOContext,
@@ -35,7 +36,8 @@ export const ANTIALIASING = {
   none: { label: 'None' },
   fxaa: { label: 'FXAA' },
   smaa: { label: 'SMAA' },
-  traa: { label: 'TRAA (over frames)' }
+  traa: { label: 'TRAA (over frames)' },
+  taau: { label: 'TAAU (over frames, of a quarter of the pixels)' }
 } as const
 
 /** Post effects of the valley. */
@@ -60,6 +62,9 @@ const MOVING = 0.7
 /** Samples of motion blur where little moves, and where much does: one for two pixels in between. */
 const FEWEST_SAMPLES = 3
 const MOST_SAMPLES = 12
+
+/** Pixels along a side of the pictures that are added up to a larger one (TAAU), over those of that. */
+const SMALL = 0.5
 
 type Disposable = { dispose(): void }
 
@@ -115,7 +120,12 @@ export class ValleyFinish {
   /** Light of the scene after all that happens in the camera. */
   #picture(effects: ValleyEffects): Node {
     const { scenePass, exposure, depth } = this.#air
-    const motion = effects.antialiasing === 'traa' ? this.#motion() : null
+    const { antialiasing } = effects
+    const scale = antialiasing === 'taau' ? SMALL : 1
+    scenePass.setResolutionScale(scale)
+    this.#air.picture.scale = scale
+    scenePass.setMRT(null)
+    const motion = antialiasing === 'traa' || scale < 1 ? this.#motion(scale) : null
     this.#occlusion = effects.occlusion
       ? this.#keep(new LastOcclusion(this.#renderer, depth, this.#camera))
       : undefined
@@ -123,8 +133,10 @@ export class ValleyFinish {
       this.#occlusion === undefined ? null : builtinAOContext(this.#occlusion.sample())
     let picture: Node = exposure
     if (motion !== null) {
-      const smooth = traa(this.#texture(picture, 'TRAA'), depth, motion, this.#camera)
-      picture = this.#keep(smooth)
+      const smooth = scale < 1 ? taau : traa
+      const name = scale < 1 ? 'TAAU' : 'TRAA'
+      const sharp = this.#texture(picture, name, scale)
+      picture = this.#keep(smooth(sharp, depth, motion, this.#camera))
     }
     if (effects.depthOfField) {
       const sharp = this.#texture(picture, 'DoF')
@@ -149,11 +161,11 @@ export class ValleyFinish {
   }
 
   /** Motion of ground, clouds and sky over the screen since the last frame. */
-  #motion(): ReturnType<typeof rtt> {
+  #motion(scale: number): ReturnType<typeof rtt> {
     const { scenePass, depth, clouds } = this.#air
     scenePass.setMRT(mrt({ output, velocity }))
     const sky = skyVelocity(scenePass.getTextureNode('velocity'), depth, this.#camera)
-    return this.#texture(this.#keep(cloudVelocity(sky, clouds)), 'Motion')
+    return this.#texture(this.#keep(cloudVelocity(sky, clouds)), 'Motion', scale)
   }
 
   /** Coarse motion for motion blur: of clouds and of what stands still, which costs the scene's pass nothing. */
@@ -185,9 +197,11 @@ export class ValleyFinish {
    * A picture that effects read at many places.
    *
    * @param name - Name of its pass.
+   * @param resolutionScale - Pixels along a side over those of the canvas.
    */
-  #texture(picture: Node, name: string): ReturnType<typeof rtt> {
-    const texture = this.#keep(rtt(picture as never, null, null, { depthBuffer: false }))
+  #texture(picture: Node, name: string, resolutionScale = 1): ReturnType<typeof rtt> {
+    const options = { depthBuffer: false, resolutionScale }
+    const texture = this.#keep(rtt(picture as never, null, null, options))
     texture.name = name
     return texture
   }

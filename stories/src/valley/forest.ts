@@ -1,4 +1,5 @@
 import { Color, Matrix4, Quaternion, Vector3 } from 'three'
+import type { Node } from 'three/webgpu'
 import { randomSequence } from '../random'
 import { fieldBorder, forestAt, groundHeight, isField, isOnRoad } from './ground'
 import { VILLAGE } from './places'
@@ -12,20 +13,26 @@ const REACH = 2600
 /** Distances from which trees are drawn with fewer triangles, and with the fewest [m]. */
 const DISTANCES = [130, 420] as const
 
+/** Share of what faces the sky that snow covers, in [0, 1]; null where none falls. */
+type Snow = Node<'float'> | null
+
+const winterOf = (snow: Snow, isBare: boolean) => snow && { snow, isBare }
+
 /** Number of the border between fields that is nearest to the village. */
 const VILLAGE_BORDER = 6
 
 /** Spruces on the slopes. */
-export const createForest = (count: number): Trees =>
+export const createForest = (count: number, snow: Snow = null): Trees =>
   new Trees(
     [branchedSpruce(9, 6), spruce(5, 8), spruce(1, 4)],
     DISTANCES,
     plant(count, 11, (x, z, height) => forestAt(x, z) + (height > 2 ? 0.004 : 0)),
-    1
+    1,
+    winterOf(snow, false)
   )
 
 /** Broad-leaved trees about the village, along the shore, in hedges and copses. */
-export function createGrove(count: number): Trees {
+export function createGrove(count: number, snow: Snow = null): Trees {
   const hedges = hedgesNear(0.25 * count)
   const others = plant(count - hedges.length, 23, (x, z, height) => {
     const fromVillage = Math.hypot(x - VILLAGE.x, z - VILLAGE.z)
@@ -39,12 +46,13 @@ export function createGrove(count: number): Trees {
     [leafyTree('lime', 11), leafyTree('lime', 3), distantTree('lime', 2)],
     DISTANCES,
     hedges.concat(others),
-    2
+    2,
+    winterOf(snow, true)
   )
 }
 
 /** Birches among them. */
-export const createBirches = (count: number): Trees =>
+export const createBirches = (count: number, snow: Snow = null): Trees =>
   new Trees(
     [leafyTree('birch', 10), leafyTree('birch', 3), distantTree('birch', 2)],
     DISTANCES,
@@ -53,7 +61,8 @@ export const createBirches = (count: number): Trees =>
       const shore = height > 1.2 && height < 4 ? 0.2 : 0
       return height > 1.2 && height < 120 ? shore + copse : 0
     }),
-    2
+    2,
+    winterOf(snow, true)
   )
 
 /** Trees in rows between fields, from the village outwards; rows have gaps. */

@@ -51,6 +51,9 @@ export const FARMED = 40
 /** Depth by which the snow line comes down while snow lies everywhere [m]. */
 const FALLEN_SNOW = 2300
 
+/** Part of a snowed wood that is dark, seen from afar. */
+const WOODS = 0.84
+
 /** Half width of the road from the village to the lake [m]. */
 export const HALF_ROAD = 2.2
 
@@ -128,7 +131,7 @@ export function groundMaterial(
   // Each of its many scales is blurred far away: there are coarser ones. The finest are seen along the ground.
   const grazed = picture.clone()
   picture.anisotropy = 1
-  grazed.anisotropy = 8
+  grazed.anisotropy = 4
   for (const each of [picture, grazed]) {
     material.addEventListener('dispose', () => each.dispose())
   }
@@ -213,7 +216,10 @@ export function groundMaterial(
   const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW))
   const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
-  color = mix(color, white, snow.mul(smoothstep(0.46, 0.3, slope)))
+  // Of woods one sees the trunks and the undersides of branches, too.
+  const dark = forest.mul(fine.mul(0.25).add(WOODS)).clamp()
+  const whitened = snow.mul(smoothstep(0.46, 0.3, slope)).mul(dark.oneMinus())
+  color = mix(color, white, whitened)
   material.colorNode = color
   material.emissiveNode = lamplight
   return material

@@ -7,6 +7,8 @@ import {
 } from 'three'
 import {
   attribute,
+  float,
+  mix,
   normalViewGeometry,
   positionView,
   smoothstep,
@@ -14,7 +16,7 @@ import {
   uv,
   vec3
 } from 'three/tsl'
-import type { NodeMaterial } from 'three/webgpu'
+import type { Node, NodeMaterial } from 'three/webgpu'
 import { randomSequence } from '../random'
 
 /** Texels along an edge of each of the two halves of the picture. */
@@ -30,6 +32,17 @@ const FAR = 160
 
 /** Blue of vertices in the shade of a crown over their green, at most. */
 const SHADED = 0.12
+
+/** Colour of twigs over that of leaves, and how much more of a crown is gaps where leaves have fallen. */
+const TWIGS = [1.25, 0.66, 1.9] as const
+const FALLEN = 0.2
+
+/** Share of leaves that have fallen: all where snow lies. */
+export const fallenLeaves = (snow: Node<'float'>): Node<'float'> => smoothstep(0.1, 0.6, snow)
+
+/** Colour of a crown over that of its leaves, by the share that has fallen. */
+export const autumnColor = (fallen: Node<'float'>): Node<'vec3'> =>
+  mix(vec3(1), vec3(...TWIGS), fallen)
 
 type Bytes = Uint8Array
 
@@ -106,8 +119,10 @@ function createLeafTexture(): DataTexture {
 /**
  * Gives a material of trees their leaves and needles, by texture coordinates: bark, of which vertices are redder than green, and
  * leaves in the shade, which are less blue than {@link SHADED}, have none. Leaves are lit by the normals of their vertices from both sides.
+ *
+ * @param fallen - Share of the leaves that have fallen, in [0, 1].
  */
-export function setFoliage(material: NodeMaterial): void {
+export function setFoliage(material: NodeMaterial, fallen: Node<'float'> = float(0)): void {
   const picture = createLeafTexture()
   material.addEventListener('dispose', () => picture.dispose())
   const leaf = texture(picture, uv()).toConst()
@@ -118,7 +133,9 @@ export function setFoliage(material: NodeMaterial): void {
   const solid = smoothstep(FAR / 8, FAR, distance)
     .mul(far - near)
     .add(near)
+    .add(fallen.mul(FALLEN))
   material.maskNode = leaf.g.greaterThan(solid).or(isBark)
-  material.colorNode = vec3(isBark.select(1, leaf.r.mul(1.25).add(0.22)))
+  const leafy = autumnColor(fallen).mul(leaf.r.mul(1.25).add(0.22))
+  material.colorNode = isBark.select(vec3(1), leafy)
   material.normalNode = normalViewGeometry
 }

@@ -4,6 +4,7 @@ import type { ValleyState } from './Valley'
 export const openingState = {
   weather: 'fair' as const,
   latitude: 46,
+  longitude: 10, // where the weather has good cumulus
   date: Date.UTC(2026, 5, 1),
   hour: 8,
   dayLength: 1200,

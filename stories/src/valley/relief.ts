@@ -172,7 +172,7 @@ export class Relief {
       generateMipmaps: true,
       minFilter: LinearMipmapLinearFilter,
       magFilter: LinearFilter,
-      anisotropy: 4,
+      anisotropy: 2,
       autoUpdate: false
     })
   }

@@ -172,11 +172,13 @@ function churchLamp(x: number, y: number, z: number): PointLight & Pick<Village,
  * @param heightAt - Height of the ground at a place, default that of the valley [m].
  * @param middle - Place of the church, default by the valley's lake [m].
  * @param lamps - Lamps about it; by default one by the church.
+ * @param snow - Share of the roofs that snow covers, in [0, 1]; null for none.
  */
 export function createVillage(
   heightAt = groundHeight,
   middle: Readonly<Record<'x' | 'z', number>> = VILLAGE,
-  lamps: StreetLamps | null = null
+  lamps: StreetLamps | null = null,
+  snow: Node<'float'> | null = null
 ): Village {
   const houses = housesAbout(middle)
   const lit = uniform(0)
@@ -221,6 +223,7 @@ export function createVillage(
   tiles.colorNode = roofColor()
   const plaster = new VertexLitMaterial({ color: '#b9b1a2' })
   const slates = new VertexLitMaterial({ color: '#5b3a2e' })
+  for (const each of [tiles, plaster, slates]) each.snowNode = snow
   const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)
   const roofs = new InstancedMesh(roof(), tiles, HOUSES)
   const chimneys = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), plaster, HOUSES)

@@ -1,5 +1,5 @@
-import { cloudPreset } from '@welkin/clouds'
-import type { CloudLayers } from '@welkin/clouds'
+import { cloudPreset, cloudQualities } from '@welkin/clouds'
+import type { CloudLayers, CloudQuality, CloudQualityName } from '@welkin/clouds'
 
 /** A weather of the valley: numbers that all blend. */
 export interface Weather {
@@ -22,7 +22,7 @@ export const weathers = {
   fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...dry },
   clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...dry },
   broken: { cumulus: 0.4, deck: 0.55, cirrus: 0.2, turbidity: 2.5, mist: 0, ...dry },
-  mist: { cumulus: 0.08, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.008, ...dry },
+  mist: { cumulus: 0, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.008, ...dry },
   overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...dry },
   shower: { cumulus: 0.35, deck: 0.45, cirrus: 0.1, turbidity: 2.25, mist: 0, rain: 6, snow: 0 },
   snow: { cumulus: 0.1, deck: 0.95, cirrus: 0, turbidity: 3, mist: 0, rain: 0, snow: 1.5 }
@@ -68,6 +68,9 @@ export const valleyLayers = [
 /** Share of the valley that banks of fog cover in the mist. */
 const FOGGY = 0.9
 
+/** Most steps to the light, and least depth of a step, in banks of fog: they are soft, and have no bumps that shade each other. */
+const FOG_STEPS = { light: 2, depth: 0.6 }
+
 /** Rates below cumulus and below the deck over that around the camera, which stands between their cores [–]. */
 const SHAFTS = [4, 2] as const
 /** Altitude above which snow falls in summer [m]. */
@@ -108,6 +111,23 @@ export class WeatherBlend {
     return true
   }
 
+  /** Share of the banks of fog, in [0, 1]; 0 or less where there are none, or a deck in their place. */
+  #fog(hasMist: boolean): number {
+    const { mist, deck } = this.current
+    return (hasMist ? mist / weathers.mist.mist : 0) - deck
+  }
+
+  /** Fineness of clouds in this weather, over that of others. */
+  qualityOf(
+    quality: CloudQualityName | CloudQuality,
+    hasMist: boolean
+  ): CloudQualityName | CloudQuality {
+    if (this.#fog(hasMist) <= 0) return quality
+    const fine = typeof quality === 'string' ? cloudQualities[quality] : quality
+    const lightSteps = Math.min(fine.lightSteps, FOG_STEPS.light)
+    return { ...fine, lightSteps, depthStep: Math.max(fine.depthStep, FOG_STEPS.depth) }
+  }
+
   /**
    * @param hasClouds - False for a sky without any.
    * @param hasMist - False for a valley without banks of fog.
@@ -121,10 +141,10 @@ export class WeatherBlend {
     shadow: boolean,
     falls: boolean
   ): void {
-    const { cumulus, deck, cirrus, mist, rain, snow } = this.current
+    const { cumulus, cirrus, rain, snow } = this.current
     const rates = [rain * SHAFTS[0], rain * SHAFTS[1] + snow, 0]
     // The deck and banks of fog are one layer: one goes before the other comes.
-    const foggy = (hasMist ? mist / weathers.mist.mist : 0) - deck
+    const foggy = this.#fog(hasMist)
     layers.at(1).set(foggy > 0 ? fogForm : deckForm)
     const covers = [cumulus, foggy > 0 ? foggy * FOGGY : -foggy, cirrus]
     const freezingLevel = snow > 0 ? 0 : FREEZING

@@ -1,5 +1,5 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import type { Texture, Vector3 } from 'three'
+import { Vector3, type Texture } from 'three'
 import { Fn, If, float, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { Float, Int, LevelTexture, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
@@ -47,6 +47,14 @@ const DISPLACEMENT = 1e5
 /** Texels at each edge that bilinear look-ups must not leave. */
 const MARGIN = 0.5
 
+/**
+ * Way of camera and clouds after which the maps are drawn anew [m]: as far, weather is looked up aside. Greater: clouds shift by
+ * jerks; smaller: slower.
+ */
+const STALE = 4
+
+const _viewpoint = new Vector3()
+
 /** Farthest from the middle of a tile that it is looked up, with the texels next to those, in texture coordinates of the tile. */
 const RIM = 0.5 + 2 / SIZE
 const FALL_RIM = (FALL_SIZE / 2 + 2) / SIZE
@@ -64,6 +72,14 @@ const FALL_PER_POSITION =
   (perPosition(FALL_SIZE, EVEN / FALL_DISTANCE) * FALL_SIZE) / SIZE
 const REGIONAL_PER_POSITION = perPosition(REGIONAL_SIZE, REGIONAL_EVEN)
 
+/** State that maps were drawn for. */
+interface DrawnFor {
+  /** Camera from the planet's centre, in the mapped space [m]. */
+  readonly viewpoint: Vector3
+  /** All else that they depend on, but for the wind. */
+  readonly state: readonly unknown[]
+}
+
 /** A place that a texel of a map stands for. */
 interface PlaceInMap {
   /** Displacement in the plane, and that of the subpoint [m]. */
@@ -74,8 +90,8 @@ interface PlaceInMap {
 }
 
 /**
- * Weather's background of all layers around a camera's subpoint, drawn anew for each frame: rays that look it up
- * there take one texture read in place of three that wait for each other. Farther away they take four, but the long code of
+ * Weather's background of all layers around a camera's subpoint, drawn anew where camera, clouds or layers have changed: rays that
+ * look it up there take one texture read in place of three that wait for each other. Farther away they take four, but the long code of
  * fronts and belts is not in their shader: a second map has the weather of whole regions, for all layers, as far as clouds are in sight.
  *
  * Where there is precipitation, it is mapped as well, by the columns from which it falls: that is smooth, and the search
@@ -96,6 +112,10 @@ export class WeatherMap {
   readonly #regions: LevelTexture<Vec2>
   /** Distance within which texels of the map of regions are about as wide [m]. */
   readonly #even = number()
+  /** State that the maps were drawn for last; null before. */
+  #drawn: DrawnFor | null = null
+  /** Way of the clouds since then [m]. */
+  #drifted = 0
   /** Two directions along the ground at the subpoint, in the mapped space. */
   readonly #axes: readonly [ReturnType<typeof vector3>, ReturnType<typeof vector3>] = [
     vector3(),
@@ -194,8 +214,25 @@ export class WeatherMap {
     })()
   }
 
-  /** Draws the map; `CloudField.update` goes first. */
+  /** True if the maps are not those of what there is now; takes note of it. */
+  #isStale(up: Vector3): boolean {
+    const { layers, view, radius, fadeIn, pixelAngle, drifts, worldMap } = this.#field
+    const state = [...layers].map<unknown>(layer => layer.parameters)
+    state.push(fadeIn, pixelAngle.value, radius.value)
+    this.#drifted += Math.max(...drifts.map(drift => drift.length()))
+    _viewpoint.copy(up).multiplyScalar(radius.value + view.height.value)
+    const isSame = (drawn: DrawnFor): boolean =>
+      drawn.viewpoint.distanceTo(_viewpoint) + this.#drifted < STALE &&
+      state.every((value, i) => value === drawn.state[i])
+    if (worldMap === null && this.#drawn !== null && isSame(this.#drawn)) return false
+    this.#drawn = { viewpoint: _viewpoint.clone(), state }
+    this.#drifted = 0
+    return true
+  }
+
+  /** Draws the maps where they are stale; `CloudField.update` goes first. */
   render(renderer: Renderer, up: Vector3): void {
+    if (!this.#isStale(up)) return
     const [x, y] = this.#axes
     const { layers, view, radius } = this.#field
     const top = Math.max(...[...layers].map(layer => layer.parameters.topAltitude))
@@ -284,8 +321,9 @@ export class WeatherMap {
     }
   }
 
-  /** Frees the map. */
+  /** Frees the map, which is drawn again when needed. */
   dispose(): void {
+    this.#drawn = null
     for (const each of [this.#target, this.#regionalTarget, ...this.#passes]) each.dispose()
   }
 }

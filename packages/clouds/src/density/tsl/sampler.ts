@@ -88,8 +88,12 @@ export function weatherCacheAt(
           background.assign(found)
           return
         }
-        const options = { ...LIT, storm: own }
-        const { extinction } = sampleLayer(field, layer, found, sample, options)
+        const extinction = float(0).toVar()
+        // A layer that no other overlaps is the densest, whatever it has.
+        If(range.last.sub(range.first).greaterThan(int(1)), () => {
+          const options = { ...LIT, storm: own }
+          extinction.assign(sampleLayer(field, layer, found, sample, options).extinction)
+        })
         If(extinction.greaterThan(most), () => {
           most.assign(extinction)
           background.assign(found)
