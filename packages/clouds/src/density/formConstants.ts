@@ -157,7 +157,7 @@ export const columnForm = {
    * Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World
    * clouds*).
    */
-  tops: 1.7,
+  tops: 1.5,
   /**
    * Height up to which less and less of clouds is seen towards their bases, in [0, 1], without an anvil and
    * with one, and the least share. Smaller: clouds are darker from above, and too bright at the limb (*World clouds*).
@@ -171,5 +171,5 @@ export const columnForm = {
    */
   inside: 1.25,
   /** Factor of the same in storms, of which much is in the shade of their anvils [–]. Greater: storms are too bright from afar. */
-  insideStorms: 0.18
+  insideStorms: 0.05
 } as const

@@ -97,7 +97,7 @@ const THIN = 0.01
 function seenFromMiddle(depth: Vec2): Vec2 {
   const least = depth.max(THIN).toConst() as Vec2
   const through = least.negate().exp().toConst() as Vec2
-  return least.reciprocal().sub(through.div(through.oneMinus())).sub(0.5).toConst() as Vec2
+  return least.reciprocal().sub(through.div(through.oneMinus())).sub(0.5).toConst()
 }
 
 /**
