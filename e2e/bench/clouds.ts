@@ -37,6 +37,12 @@ const cloudCases: readonly CloudCase[] = [
   ...cloudViews.map(view => ({ name: view.name, view, qualities: everyQuality })),
   { name: 'low sun', view: ground, sunElevation: 4, qualities: everyQuality },
   {
+    name: 'congestus',
+    view: ground,
+    layers: () => cloudPreset('congestus'),
+    qualities: ['medium', 'high']
+  },
+  {
     name: 'cumulonimbus',
     view: ground,
     layers: () => cloudPreset('cumulonimbus'),
