@@ -102,7 +102,8 @@ gpuTest(
       { quality: 'medium' },
       { enabled: false }
     ] as const) {
-      const { camera, shafts, draw, dispose } = towerInMist(renderer, true)
+      const made = towerInMist(renderer, true)
+      const { camera, shafts, draw } = made
       shafts.set(options)
       let picture: Picture | undefined
       for (let frame = 0; frame <= TURNING; frame++) {
@@ -110,7 +111,7 @@ gpuTest(
         picture = await draw()
       }
       pictures.push(picture!)
-      dispose()
+      made.dispose()
     }
     const [exact, ours, lit] = pictures
     const [likeness, without] = [psnr(ours, exact), psnr(lit, exact)]

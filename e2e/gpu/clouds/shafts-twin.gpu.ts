@@ -128,7 +128,7 @@ gpuTest(
       loop('step', STEPS, index => {
         const along = float(index).add(0.5).mul(length) as Float
         const offset = (input.xyz as Vec3).add(field.view.lightDirection.mul(along)).toConst()
-        const place = { offset: offset as Vec3, ...field.view.localCoordinates(offset as Vec3) }
+        const place = { offset: offset as Vec3, ...field.view.localCoordinates(offset) }
         const sample = { ...place, distance: float(3000).toConst() as Float }
         depth.addAssign(medium.extinctionAt(field, layerAt(field, int(0)), sample).mul(length))
       })

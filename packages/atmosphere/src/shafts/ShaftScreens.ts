@@ -1,6 +1,5 @@
 import { fail } from '@welkin/geo'
 import type { AirPicture, ForegroundLayer } from '../view/AirShadows'
-import type { CameraShafts } from './CameraShafts'
 
 /** Shafts of a picture, as far as those of its camera ask them. */
 interface Screen {
@@ -25,7 +24,7 @@ export class ShaftScreens extends Set<Screen> {
 /** @throws If shafts would never be seen in a picture. */
 export function checkPicture(
   picture: AirPicture,
-  { camera, atmosphere }: Pick<CameraShafts, 'camera'> & Pick<AirPicture, 'atmosphere'>
+  { camera, atmosphere }: Omit<AirPicture, 'type'>
 ): void {
   const { type } = picture
   if (picture.atmosphere !== atmosphere)

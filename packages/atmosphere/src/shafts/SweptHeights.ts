@@ -4,7 +4,7 @@ import type { Renderer } from 'three/webgpu'
 import { FragmentPass, tableTarget } from '../tables/FragmentPass'
 import { sampleLevel0, type Float, type Vec2, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
-import { isInField } from './SweptShadow'
+import { isInField } from './tsl/isInField'
 
 /** Part of a texel by which the light may turn, over the field's width, before the map is drawn anew. */
 const TURN = 0.25
@@ -77,7 +77,7 @@ export class SweptHeights {
     const { size, heightAt } = this.#field
     if (this.#passes.length === 0) {
       const first = Fn(() => {
-        const height = heightAt(uv() as unknown as Vec2).clamp(-MAX_HEIGHT, MAX_HEIGHT)
+        const height = heightAt(uv()).clamp(-MAX_HEIGHT, MAX_HEIGHT)
         return vec4(height, height, 0, 0)
       })()
       this.#passes = [first, this.#sweep(0), this.#sweep(1)].map(

@@ -1,10 +1,11 @@
 import { Matrix4, type Camera, type Vector3 } from 'three'
-import { step, texture, vec2 } from 'three/tsl'
+import { texture } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { sampleLevel0, type Float, type Vec2, type Vec3 } from '../tsl-types'
+import { sampleLevel0, type Float, type Vec3 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { ParallelLight } from './shadowMaps'
 import type { SweptHeights } from './SweptHeights'
+import { isInField } from './tsl/isInField'
 
 /** Error of heights in half floats, over their size, after some sweeps. Less: high ground shades itself in bands. */
 const HALF_STEP = 2 ** -10
@@ -78,10 +79,4 @@ export class SweptShadow {
     for (const field of this.#maps.keys()) field.release(this.#light)
     this.#maps.clear()
   }
-}
-
-/** 1 for places in [0, 1]², 0 for others. */
-export function isInField(place: Vec2): Float {
-  const inside = step(0, place).mul(step(place, vec2(1))) as unknown as Vec2
-  return inside.x.mul(inside.y)
 }

@@ -59,7 +59,7 @@ export function claimShadow(light: ParallelLight, user: object): void {
   if (shadow.map && shadow.map !== claim?.node.shadowMap) return
   if (claim === undefined) {
     if (!shadow.isDirectionalLightShadow || shadow.shadowNode) return
-    claim = { node: shadowNodeOf(light) as PlainShadowNode, users: new Set() }
+    claim = { node: shadowNodeOf(light), users: new Set() }
     claims.set(shadow, claim)
   }
   claim.users.add(user)

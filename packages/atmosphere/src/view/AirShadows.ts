@@ -92,7 +92,7 @@ export interface AirOptions {
 
 /** Shadows of an option, in a list. */
 export const shaftsIn = (shafts: AirOptions['shafts'] = []): readonly AirShadows[] =>
-  [shafts].flat() as AirShadows[]
+  [shafts].flat()
 
 /** @throws If an option is unknown or of the wrong kind. */
 export function checkAirOptions(where: string, options: AirOptions): void {

@@ -71,14 +71,6 @@ const PER_POSITION = perPosition(SIZE, EVEN / MAXIMUM_DISTANCE)
 const FALL_PER_POSITION = (perPosition(FALL_SIZE, EVEN / FALL_DISTANCE) * FALL_SIZE) / SIZE
 const REGIONAL_PER_POSITION = perPosition(REGIONAL_SIZE, REGIONAL_EVEN)
 
-/** State that maps were drawn for. */
-interface DrawnFor {
-  /** Camera from the planet's centre, in the mapped space [m]. */
-  readonly viewpoint: Vector3
-  /** All else that they depend on, but for the wind. */
-  readonly state: readonly unknown[]
-}
-
 /** A place that a texel of a map stands for. */
 interface PlaceInMap {
   /** Displacement in the plane, and that of the subpoint [m]. */
@@ -111,10 +103,11 @@ export class WeatherMap {
   readonly #regions: LevelTexture<Vec2>
   /** Distance within which texels of the map of regions are about as wide [m]. */
   readonly #even = number()
-  /** State that the maps were drawn for last; null before. */
-  #drawn: DrawnFor | null = null
+  /** Camera that the maps were drawn for, from the planet's centre [m], and all else that they depend on but for the wind. */
+  readonly #drawnAt = new Vector3()
+  #state: readonly unknown[] = []
   /** Way of the clouds since then [m]. */
-  #drifted = 0
+  #drifted = Infinity
   /** Two directions along the ground at the subpoint, in the mapped space. */
   readonly #axes: readonly [ReturnType<typeof vector3>, ReturnType<typeof vector3>] = [
     vector3(),
@@ -216,17 +209,19 @@ export class WeatherMap {
   /** True if the maps are not those of what there is now; takes note of it. */
   #isStale(up: Vector3): boolean {
     const { layers, view, radius, fadeIn, pixelAngle, drifts, worldMap } = this.#field
-    const state = [...layers].map<unknown>(layer => layer.parameters)
-    state.push(fadeIn, pixelAngle.value, radius.value)
-    this.#drifted += Math.max(...drifts.map(drift => drift.length()))
+    const state = [fadeIn, pixelAngle.value, ...Array.from(layers, each => each.parameters)]
     _viewpoint.copy(up).multiplyScalar(radius.value + view.height.value)
-    const isSame = (drawn: DrawnFor): boolean =>
-      drawn.viewpoint.distanceTo(_viewpoint) + this.#drifted < STALE &&
-      state.every((value, i) => value === drawn.state[i])
-    if (worldMap === null && this.#drawn !== null && isSame(this.#drawn)) return false
-    this.#drawn = { viewpoint: _viewpoint.clone(), state }
-    this.#drifted = 0
-    return true
+    this.#drifted += Math.max(...drifts.map(drift => drift.length()))
+    const isStale =
+      worldMap !== null ||
+      this.#drawnAt.distanceTo(_viewpoint) + this.#drifted > STALE ||
+      state.some((value, i) => value !== this.#state[i])
+    if (isStale) {
+      this.#drawnAt.copy(_viewpoint)
+      this.#state = state
+      this.#drifted = 0
+    }
+    return isStale
   }
 
   /** Draws the maps where they are stale; `CloudField.update` goes first. */
@@ -322,7 +317,7 @@ export class WeatherMap {
 
   /** Frees the map, which is drawn again when needed. */
   dispose(): void {
-    this.#drawn = null
+    this.#drifted = Infinity
     for (const each of [this.#target, this.#regionalTarget, ...this.#passes]) each.dispose()
   }
 }

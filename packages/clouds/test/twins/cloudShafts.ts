@@ -16,7 +16,7 @@ const STEPS = 600
  *
  * @param up - Height over the plane that touches the planet at the eye's subpoint [m].
  * @param north - Towards the sun [m].
- * @param elevation - Of the sun over that plane [rad].
+ * @param elevation - Angle of the sun over that plane [rad].
  */
 export function depthToSun(
   { planetRadius, base, top, extinction }: ShadingDeck,

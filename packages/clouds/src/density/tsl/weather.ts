@@ -8,12 +8,7 @@ import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, zenithAt, type CloudSample } from './sample'
 import { ifStorm, stormAround, stormNearby } from './storm'
 import { stormRadius, type StormNearby } from './stormNearby'
-import {
-  unpackBackground,
-  weatherBackground,
-  type WeatherBackground,
-  type WeatherSystems
-} from './weatherBackground'
+import { unpackBackground, weatherBackground, type WeatherBackground } from './weatherBackground'
 
 /** The weather of a layer at a place. */
 export interface CloudWeather {
@@ -123,18 +118,16 @@ export function cloudWeather(
  * test/twins/density.ts
  *
  * @param subpoint - `subpointOffset` of the sample.
- * @param around - `weatherSystems` there, which all layers share; left out, they are looked up.
  */
 export function filteredCoverageAt(
   field: CloudField,
   layer: LayerNodes,
   subpoint: Vec3,
-  sample: CloudSample,
-  around?: WeatherSystems
+  sample: CloudSample
 ): Float {
   if (field.extinction) return layer.coverage
   const footprint = footprintOf(field, sample)
-  const packed = weatherBackground(field, layer, subpoint, sample, footprint, around)
+  const packed = weatherBackground(field, layer, subpoint, sample, footprint)
   const background = unpackBackground(packed)
   const still = vec2(0) as Vec2
   const resolution = resolutionAt(layer, footprint)

@@ -6,7 +6,6 @@ import { forLayers, layerAt, type LayerNodes } from '../../density/tsl/layer'
 import { subpointOffset } from '../../density/tsl/sample'
 import { columnDensityAt } from '../../density/tsl/unresolved'
 import { filteredCoverageAt } from '../../density/tsl/weather'
-import { weatherSystems } from '../../density/tsl/weatherBackground'
 import { footprintForm, LOWEST_COSINE } from '../cpu/decks'
 
 /** Transmittances of the cloud decks on one side of a plane: parts of unit flux. Twin: cpu/decks.ts */
@@ -77,17 +76,13 @@ export function decksAround(
   falling?: FallingDecks
 ): Decks {
   const distance = offset.length().toConst() as Float
-  const subpoint = subpointOffset(field, { offset, altitude, up, distance }).toConst() as Vec3
-  // Smooth over 100 km: once for all layers, whatever they blur.
-  const around = field.extinction
-    ? undefined
-    : weatherSystems(field, subpoint, distance.mul(field.pixelAngle).max(footprintForm.least))
   return decksOf(field, light, altitude, cosLight, falling, layer => {
     const rise = layer.baseAltitude.add(layer.thickness.mul(0.5)).sub(altitude).abs()
     const footprint = rise.mul(footprintForm.heights).max(footprintForm.least)
     const seen = distance.max(footprint.div(field.pixelAngle)).toConst() as Float
     const sample = { offset, altitude, up, distance: seen }
-    return filteredCoverageAt(field, layer, subpoint, sample, around)
+    const subpoint = subpointOffset(field, sample).toConst()
+    return filteredCoverageAt(field, layer, subpoint, sample)
   })
 }
 
