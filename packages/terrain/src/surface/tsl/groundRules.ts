@@ -97,7 +97,7 @@ export interface GroundClimate {
 }
 
 /**
- * What latitude makes of the ground, found at vertices: height of the snow line (x) [m] and dryness (y) where it is neither wet nor dry country.
+ * Ground by latitude, found at vertices: height of the snow line (x) [m] and dryness (y) where it is neither wet nor dry country.
  *
  * @param northing - Sine of the latitude.
  */
