@@ -44,35 +44,38 @@ const pixels = (picture: Picture): number[][] =>
 const isLike = (pixel: readonly number[], color: readonly number[]): boolean =>
   color.every((value, i) => Math.abs(pixel[i] - value) < 0.02)
 
-gpuTest('a terrain that is disposed of leaves no texture and no geometry, and is drawn anew as it was', async t => {
-  const { renderer, scene, camera, make } = await stage(t)
-  const { memory } = renderer.info
-  /** Picture of a terrain, once it is disposed of again. */
-  const live = async (terrain: Terrain): Promise<number[][]> => {
-    scene.add(terrain)
-    const before = memory.textures
-    terrain.update(renderer, camera, Infinity)
-    const picture = pixels(await t.render(renderer, scene, camera, SIZE))
-    if (memory.textures <= before) throw new Error('a terrain has no textures')
-    scene.remove(terrain)
-    terrain.dispose()
-    await t.render(renderer, scene, camera, SIZE)
-    return picture
+gpuTest(
+  'a terrain that is disposed of leaves no texture and no geometry, and is drawn anew as it was',
+  async t => {
+    const { renderer, scene, camera, make } = await stage(t)
+    const { memory } = renderer.info
+    /** Picture of a terrain, once it is disposed of again. */
+    const live = async (terrain: Terrain): Promise<number[][]> => {
+      scene.add(terrain)
+      const before = memory.textures
+      terrain.update(renderer, camera, Infinity)
+      const picture = pixels(await t.render(renderer, scene, camera, SIZE))
+      if (memory.textures <= before) throw new Error('a terrain has no textures')
+      scene.remove(terrain)
+      terrain.dispose()
+      await t.render(renderer, scene, camera, SIZE)
+      return picture
+    }
+    const terrain = make()
+    const first = await live(terrain)
+    // What is left now is the atmosphere's.
+    const before = { ...memory }
+    const second = await live(terrain)
+    await live(make())
+    for (const kind of ['textures', 'geometries'] as const) {
+      t.note(`${kind}: ${before[kind]}, then ${memory[kind]}`)
+      if (memory[kind] > before[kind])
+        throw new Error(`${memory[kind] - before[kind]} ${kind} are left`)
+    }
+    const worst = Math.max(...first.map((pixel, i) => Math.abs(pixel[0] - second[i][0])))
+    if (worst > 1e-5) throw new Error(`the second picture differs by ${worst}`)
   }
-  const terrain = make()
-  const first = await live(terrain)
-  // What is left now is the atmosphere's.
-  const before = { ...memory }
-  const second = await live(terrain)
-  await live(make())
-  for (const kind of ['textures', 'geometries'] as const) {
-    t.note(`${kind}: ${before[kind]}, then ${memory[kind]}`)
-    if (memory[kind] > before[kind])
-      throw new Error(`${memory[kind] - before[kind]} ${kind} are left`)
-  }
-  const worst = Math.max(...first.map((pixel, i) => Math.abs(pixel[0] - second[i][0])))
-  if (worst > 1e-5) throw new Error(`the second picture differs by ${worst}`)
-})
+)
 
 gpuTest('views of a terrain show its levels, its tiles, and which pages are there', async t => {
   const { renderer, scene, camera, make } = await stage(t)
@@ -99,7 +102,14 @@ gpuTest('views of a terrain show its levels, its tiles, and which pages are ther
   const green = there.filter(pixel => isLike(pixel, [0.1, 0.5, 0.15])).length
   if (green !== there.length) throw new Error(`only ${green} of ${there.length} pixels are green`)
   const colors = (view: number[][]): number =>
-    new Set(view.map(pixel => pixel.slice(0, 3).map(value => value.toFixed(3)).join())).size
+    new Set(
+      view.map(pixel =>
+        pixel
+          .slice(0, 3)
+          .map(value => value.toFixed(3))
+          .join()
+      )
+    ).size
   const levels = colors(await draw('levels', Infinity))
   const tiles = colors(await draw('tiles', Infinity))
   t.note(`${levels} levels and ${tiles} tiles in ${there.length} pixels`)

@@ -40,7 +40,7 @@ const level = (height: number): HeightSource => ({
     target.gradient.set(0, 0, 0)
     return target
   },
-  sample: (): Node<'vec4'> => vec4(0, 0, 0, height) as Node<'vec4'>
+  sample: (): Node<'vec4'> => vec4(0, 0, 0, height)
 })
 
 const luminance = (picture: Picture, x: number, y: number): number => {
@@ -64,7 +64,9 @@ function setSun(atmosphere: Atmosphere, elevation: number): void {
   const position = atmosphere.ellipsoid.geodeticToECEF(PLACE)
   const up = atmosphere.ellipsoid.surfaceNormal(position)
   const east = up.clone().set(-up.y, up.x, 0).normalize()
-  atmosphere.sunDirection = up.multiplyScalar(Math.sin(elevation)).addScaledVector(east, Math.cos(elevation))
+  atmosphere.sunDirection = up
+    .multiplyScalar(Math.sin(elevation))
+    .addScaledVector(east, Math.cos(elevation))
 }
 
 gpuTest('haze before the ground is the same as fog and as a post effect, within 2 %', async t => {
@@ -124,7 +126,14 @@ gpuTest('the ground receives shadows of things', async t => {
   const sun = new SunDirectionalLight(atmosphere, 100)
   sun.castShadow = true
   sun.shadow.mapSize.setScalar(512)
-  Object.assign(sun.shadow.camera, { left: -20, right: 20, top: 20, bottom: -20, near: 1, far: 200 })
+  Object.assign(sun.shadow.camera, {
+    left: -20,
+    right: 20,
+    top: 20,
+    bottom: -20,
+    near: 1,
+    far: 200
+  })
   sun.shadow.camera.updateProjectionMatrix()
   const scene = new Scene().add(terrain, sun, sun.target)
   // From above, on a box in the air and on ground below it; its shadow falls to the west.
@@ -175,7 +184,7 @@ function ridge(atmosphere: Atmosphere): HeightSource {
       const start = reference.sub(vec3(inSteps.x, inSteps.y, inSteps.z)).mul(256)
       const away = start.add(offset).dot(axis).div(width).toConst()
       const rise = away.mul(away).negate().exp().mul(height).toConst()
-      return vec4(axis.mul(away.mul(rise).mul(-2 / width)), rise) as Node<'vec4'>
+      return vec4(axis.mul(away.mul(rise).mul(-2 / width)), rise)
     }
   }
 }
@@ -187,7 +196,10 @@ gpuTest('a ridge casts its shadow on the ground behind it', async t => {
   const atmosphere = new Atmosphere()
   atmosphere.place(PLACE)
   atmosphere.setSunAngles(15, 90)
-  const terrain = new Terrain(atmosphere, ridge(atmosphere), { pageMemory: 20, seaLevel: -Infinity })
+  const terrain = new Terrain(atmosphere, ridge(atmosphere), {
+    pageMemory: 20,
+    seaLevel: -Infinity
+  })
   terrain.receiveShadow = true
   const sun = new SunDirectionalLight(atmosphere, 1000)
   sun.castShadow = true

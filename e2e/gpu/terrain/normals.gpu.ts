@@ -15,7 +15,7 @@ const PLACES = [
   [70, 89.999999]
 ] as const
 
-gpuTest("normals 2 m away are drawn as the CPU has them, within 0.5°", async t => {
+gpuTest('normals 2 m away are drawn as the CPU has them, within 0.5°', async t => {
   const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
   renderer.highPrecision = true
   const atmosphere = new Atmosphere({ frame: 'ecef' })
@@ -35,9 +35,7 @@ gpuTest("normals 2 m away are drawn as the CPU has them, within 0.5°", async t 
   for (const [longitude, latitude] of PLACES) {
     const height = terrain.heightAt(longitude, latitude) + 2
     ellipsoid.geodeticToECEF({ longitude, latitude, height }, camera.position)
-    camera.quaternion.setFromRotationMatrix(
-      ellipsoid.localYUpFrame(camera.position, new Matrix4())
-    )
+    camera.quaternion.setFromRotationMatrix(ellipsoid.localYUpFrame(camera.position, new Matrix4()))
     camera.rotateX(-Math.PI / 2)
     camera.updateMatrixWorld()
     terrain.update(renderer, camera, Infinity)
@@ -46,7 +44,7 @@ gpuTest("normals 2 m away are drawn as the CPU has them, within 0.5°", async t 
       material.needsUpdate = true
       return t.render(renderer, scene, camera, SIZE)
     }
-    const positions = await draw(positionView as Node<'vec3'>)
+    const positions = await draw(positionView)
     const normals = await draw(drawnNormal)
     for (let y = 0; y < SIZE.height; y++) {
       for (let x = 0; x < SIZE.width; x++) {

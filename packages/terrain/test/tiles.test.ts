@@ -170,29 +170,32 @@ it('finds the distance to a tile from below', () => {
 it.each([
   ['a summit', 0.428, 47.372, 200],
   ['a meadow', 0.494, 46.35, 338]
-])('has room for all pages of the view on %s, with shadows of 3 km about', (_name, longitude, latitude, heading) => {
-  const mountains = new MountainHeights({ seed: 513 })
-  const resolution = 12
-  const subpoint = earth.geodeticToECEF({ longitude, latitude })
-  const height = mountains.sampleAt(subpoint, { height: 0, gradient: new Vector3() }).height + 1.7
-  const camera = new PerspectiveCamera(60, 16 / 9, 0.1, 1e8)
-  earth.geodeticToECEF({ longitude, latitude, height }, camera.position)
-  camera.quaternion.setFromRotationMatrix(earth.localYUpFrame(camera.position, new Matrix4()))
-  camera.rotateY((-heading * Math.PI) / 180)
-  camera.rotateX(-0.14)
-  camera.updateMatrixWorld()
-  const viewer = viewerOf(camera, camera.position, 1.7, 0, new Matrix4(), earth, 3000, 0)
-  const { tree, pages } = new PagedTiles(mountains, earth, resolution, DETAIL, 190e6)
-  const selection = noTiles()
-  let count = 0
-  do {
-    tree.select(viewer, CAPACITY, selection)
-    for (const tile of selection.missing) Object.assign(tile, { slot: 0, fade: 0 })
-    count += selection.missing.length
-  } while (selection.missing.length > 0)
-  expect(selection.inView).toBeGreaterThan(400)
-  // Tiles out of view, which cast shadows, take little of it.
-  expect(selection.tiles.length).toBeLessThan(1.6 * selection.inView)
-  expect(count).toBeLessThan(0.95 * pages.atlas.capacity)
-  pages.dispose()
-})
+])(
+  'has room for all pages of the view on %s, with shadows of 3 km about',
+  (_name, longitude, latitude, heading) => {
+    const mountains = new MountainHeights({ seed: 513 })
+    const resolution = 12
+    const subpoint = earth.geodeticToECEF({ longitude, latitude })
+    const height = mountains.sampleAt(subpoint, { height: 0, gradient: new Vector3() }).height + 1.7
+    const camera = new PerspectiveCamera(60, 16 / 9, 0.1, 1e8)
+    earth.geodeticToECEF({ longitude, latitude, height }, camera.position)
+    camera.quaternion.setFromRotationMatrix(earth.localYUpFrame(camera.position, new Matrix4()))
+    camera.rotateY((-heading * Math.PI) / 180)
+    camera.rotateX(-0.14)
+    camera.updateMatrixWorld()
+    const viewer = viewerOf(camera, camera.position, 1.7, 0, new Matrix4(), earth, 3000, 0)
+    const { tree, pages } = new PagedTiles(mountains, earth, resolution, DETAIL, 190e6)
+    const selection = noTiles()
+    let count = 0
+    do {
+      tree.select(viewer, CAPACITY, selection)
+      for (const tile of selection.missing) Object.assign(tile, { slot: 0, fade: 0 })
+      count += selection.missing.length
+    } while (selection.missing.length > 0)
+    expect(selection.inView).toBeGreaterThan(400)
+    // Tiles out of view, which cast shadows, take little of it.
+    expect(selection.tiles.length).toBeLessThan(1.6 * selection.inView)
+    expect(count).toBeLessThan(0.95 * pages.atlas.capacity)
+    pages.dispose()
+  }
+)

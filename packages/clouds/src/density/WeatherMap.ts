@@ -53,8 +53,6 @@ const MARGIN = 0.5
  */
 const STALE = 4
 
-const _viewpoint = new Vector3()
-
 /** Farthest from the middle of a tile that it is looked up, with the texels next to those, in texture coordinates of the tile. */
 const RIM = 0.5 + 2 / SIZE
 const FALL_RIM = (FALL_SIZE / 2 + 2) / SIZE
@@ -103,11 +101,11 @@ export class WeatherMap {
   readonly #regions: LevelTexture<Vec2>
   /** Distance within which texels of the map of regions are about as wide [m]. */
   readonly #even = number()
-  /** Camera that the maps were drawn for, from the planet's centre [m], and all else that they depend on but for the wind. */
-  readonly #drawnAt = new Vector3()
+  /** Camera of the last frame, from the planet's centre, and way of camera and clouds since the maps were drawn [m]. */
+  #camera = new Vector3()
+  #way = 0
+  /** All else that they were drawn for. */
   #state: readonly unknown[] = []
-  /** Way of the clouds since then [m]. */
-  #drifted = Infinity
   /** Two directions along the ground at the subpoint, in the mapped space. */
   readonly #axes: readonly [ReturnType<typeof vector3>, ReturnType<typeof vector3>] = [
     vector3(),
@@ -206,29 +204,19 @@ export class WeatherMap {
     })()
   }
 
-  /** True if the maps are not those of what there is now; takes note of it. */
-  #isStale(up: Vector3): boolean {
-    const { layers, view, radius, fadeIn, pixelAngle, drifts, worldMap } = this.#field
-    const state = [fadeIn, pixelAngle.value, ...Array.from(layers, each => each.parameters)]
-    _viewpoint.copy(up).multiplyScalar(radius.value + view.height.value)
-    this.#drifted += Math.max(...drifts.map(drift => drift.length()))
-    const isStale =
-      worldMap !== null ||
-      this.#drawnAt.distanceTo(_viewpoint) + this.#drifted > STALE ||
-      state.some((value, i) => value !== this.#state[i])
-    if (isStale) {
-      this.#drawnAt.copy(_viewpoint)
-      this.#state = state
-      this.#drifted = 0
-    }
-    return isStale
-  }
-
   /** Draws the maps where they are stale; `CloudField.update` goes first. */
   render(renderer: Renderer, up: Vector3): void {
-    if (!this.#isStale(up)) return
     const [x, y] = this.#axes
-    const { layers, view, radius } = this.#field
+    const { layers, view, radius, fadeIn, pixelAngle, drifts, worldMap } = this.#field
+    const camera = up.clone().multiplyScalar(radius.value + view.height.value)
+    this.#way += camera.distanceTo(this.#camera) + Math.max(...drifts.map(drift => drift.length()))
+    this.#camera = camera
+    // A map of the world may change at any time.
+    const others = [worldMap && {}, fadeIn, pixelAngle.value]
+    const state = [...others, ...Array.from(layers, layer => layer.parameters)]
+    if (this.#way < STALE && state.every((value, i) => value === this.#state[i])) return
+    this.#way = 0
+    this.#state = state
     const top = Math.max(...[...layers].map(layer => layer.parameters.topAltitude))
     // To the horizon, and beyond it to clouds that stand over it.
     const angle = [view.height.value, top].reduce(
@@ -317,7 +305,7 @@ export class WeatherMap {
 
   /** Frees the map, which is drawn again when needed. */
   dispose(): void {
-    this.#drifted = Infinity
+    this.#way = STALE
     for (const each of [this.#target, this.#regionalTarget, ...this.#passes]) each.dispose()
   }
 }

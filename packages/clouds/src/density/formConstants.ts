@@ -16,7 +16,7 @@ export const strengthForm = {
    * the last: holes in an overcast (*Presets*).
    */
   offset: -0.13,
-  coverageOffset: 0.62,
+  coverageOffset: 0.61,
   fullCoverageExcess: 1.7,
   /**
    * Offset where levels of detail have lost the billows, for shape amount 1 [–], and the unresolved
@@ -139,7 +139,7 @@ export const densityForm = {
    * clouds; greater share: thin tops (*Cumulus*).
    */
   crumb: 0.2,
-  crumbFrom: [-0.9, -0.1],
+  crumbFrom: [-1.05, -0.25],
   crumbHeight: 0.4
 } as const
 

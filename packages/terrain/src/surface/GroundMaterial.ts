@@ -30,7 +30,7 @@ export const viewDirection = (): Vec3 =>
     (camera as unknown as { isOrthographicCamera?: boolean }).isOrthographicCamera === true
       ? vec3(0, 0, 1)
       : coveredPosition().negate().normalize()
-  )().toConst() as Vec3
+  )().toConst()
 
 type Variable = Vec3 & { assign(value: Vec3): void; addAssign(value: Vec3): void }
 
@@ -115,7 +115,7 @@ class GroundLightingModel extends PhysicalLightingModel {
       f90: float(1),
       roughness,
       viewDirection: toViewer
-    } as never)
+    })
     directSpecular.addAssign(irradiance.mul(highlight as unknown as Vec3))
   }
 

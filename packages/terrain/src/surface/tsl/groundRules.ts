@@ -97,7 +97,7 @@ export interface GroundClimate {
 }
 
 /**
- * What latitude makes of the ground, found at vertices: height of the snow line (x) [m] and dryness (y) where it is neither wet nor dry country.
+ * Ground by latitude, found at vertices: height of the snow line (x) [m] and dryness (y) where it is neither wet nor dry country.
  *
  * @param northing - Sine of the latitude.
  */
@@ -119,10 +119,7 @@ export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimat
   const overSea = height.sub(seaLevel).toConst('overSea') as Float
   // Ground that falls towards the equator has a normal nearer to it than up is.
   const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign()) as unknown as Float
-  const snowLine = zone.x
-    .add(climate.mul(DRY_SNOW))
-    .add(sunny.mul(SUNNY_SNOW))
-    .toConst()
+  const snowLine = zone.x.add(climate.mul(DRY_SNOW)).add(sunny.mul(SUNNY_SNOW)).toConst()
   const overSnow = height.sub(snowLine).toConst('overSnow') as Float
   const overTrees = overSnow
     .add(TREES_BELOW)

@@ -127,7 +127,7 @@ export function groundSurface(
       beach.assign(mix(beach.mul(stone.mul(0.14).add(1)), color(SEAWEED), seaweed))
     })
     return beach
-  })() as unknown as Vec3
+  })()
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
   const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
   const mapped = maps === null ? null : maps.groundAt(place, layers, colors)

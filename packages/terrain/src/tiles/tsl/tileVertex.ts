@@ -1,4 +1,15 @@
-import { Fn, attribute, ivec2, mix, positionGeometry, step, texture, vec2, vec3, vec4 } from 'three/tsl'
+import {
+  Fn,
+  attribute,
+  ivec2,
+  mix,
+  positionGeometry,
+  step,
+  texture,
+  vec2,
+  vec3,
+  vec4
+} from 'three/tsl'
 import type { Texture } from 'three'
 import type { PageAtlas } from '../../pages/PageAtlas'
 import type { TerrainUniforms } from '../../TerrainUniforms'
@@ -125,10 +136,7 @@ export function tileVertex(
  *
  * @param resolution - Cells along a tile's edge.
  */
-export const tilePages = (
-  { columns, surfaceSide, density }: PageAtlas,
-  resolution: number
-): Vec4 =>
+export const tilePages = ({ columns, surfaceSide, density }: PageAtlas, resolution: number): Vec4 =>
   Fn(() => {
     const { x: own, y: parent, z: quarter } = attribute('tilePage', 'vec4')
     const inParent = quarterOf(quarter).mul((resolution * density) / 2)
