@@ -54,7 +54,8 @@ export const falling = [
   },
   {
     name: 'nimbostratus',
-    about: 'steady rain from a closed deck: grey bands from its ragged base to the hills, which fade one behind the other',
+    about:
+      'steady rain from a closed deck: grey bands from its ragged base to the hills, which fade one behind the other',
     clouds: { preset: 'nimbostratus' },
     place: { longitude: 20, latitude: 45 },
     altitude: 60,

@@ -60,8 +60,7 @@ const perPosition = (size: number, even: number): number =>
   ((size - 2 * MARGIN) / (2 * size)) * (1 + even)
 
 const PER_POSITION = perPosition(SIZE, EVEN / MAXIMUM_DISTANCE)
-const FALL_PER_POSITION =
-  (perPosition(FALL_SIZE, EVEN / FALL_DISTANCE) * FALL_SIZE) / SIZE
+const FALL_PER_POSITION = (perPosition(FALL_SIZE, EVEN / FALL_DISTANCE) * FALL_SIZE) / SIZE
 const REGIONAL_PER_POSITION = perPosition(REGIONAL_SIZE, REGIONAL_EVEN)
 
 /** A place that a texel of a map stands for. */

@@ -135,7 +135,10 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
   ],
   nimbostratus: [{ ...overcast, topAltitude: 3500, precipitation: { rate: 3, share: 0.9 } }],
   snowShower: [{ ...congestus, precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 } }],
-  hailstorm: [{ ...storm, precipitation: { rate: 30, share: 0.4, freezingLevel: 3000, hail: 0.4 } }, smallCumulus]
+  hailstorm: [
+    { ...storm, precipitation: { rate: 30, share: 0.4, freezingLevel: 3000, hail: 0.4 } },
+    smallCumulus
+  ]
 }
 
 /** All names of {@link cloudPreset}, for menus. */

@@ -103,9 +103,17 @@ export const fallExtinctions = /*#__PURE__*/ Fn(
   ([rate, snow, hail]: [Float, Float, Float]) => {
     const { rain: r, snow: s, hail: h } = extinctionForm
     const positive = rate.max(1e-6).toConst()
-    const isThere = rate.greaterThan(0).select(1 / 1000, 0).toConst()
+    const isThere = rate
+      .greaterThan(0)
+      .select(1 / 1000, 0)
+      .toConst()
     const drops = positive.pow(r[1]).mul(r[0]).mul(snow.oneMinus()).mul(isThere)
-    const others = positive.pow(s[1]).mul(s[0]).mul(snow).mul(isThere).add(hail.mul(h / 1000))
+    const others = positive
+      .pow(s[1])
+      .mul(s[0])
+      .mul(snow)
+      .mul(isThere)
+      .add(hail.mul(h / 1000))
     return vec2(drops.add(others), others)
   },
   layout('precipitationExtinctions', 'vec2', { rate: 'float', snow: 'float', hail: 'float' })
@@ -158,10 +166,7 @@ function fallAlong(
     const noise = coarse.mul(fallForm.coarseStreaks).add(fine.mul(fallForm.fineStreaks))
     const lost = smoothstep(...strengthForm.billowLevels, level)
     const streak = fallStreak(noise, nodes.streaks.mul(layer.shapeAmount), lost)
-    const onset = nodes.ceiling
-      .sub(altitude)
-      .div(nodes.ceiling.sub(baseAltitude))
-      .clamp(0, 1)
+    const onset = nodes.ceiling.sub(altitude).div(nodes.ceiling.sub(baseAltitude)).clamp(0, 1)
     rate.assign(fallRate(nodes.rate, rank, streak, depth.mul(nodes.perVirga)).mul(onset))
   })
   return { rate, rank }

@@ -121,12 +121,7 @@ export function marchPrecipitation(
     const aside = width.div(toLight.cosine.mul(toLight.cosine).oneMinus().max(1e-4).sqrt())
     const own = ceiling.sub(sample.altitude).mul(slant).min(aside).mul(extinction)
     // The map has what falls, too.
-    const lit = clouds
-      .add(own.mul(mapped.oneMinus()))
-      .negate()
-      .exp()
-      .mul(seen)
-      .toConst() as Float
+    const lit = clouds.add(own.mul(mapped.oneMinus())).negate().exp().mul(seen).toConst() as Float
     const flakes = flaked.div(extinction).toConst() as Float
     const ofClouds = clouds.sub(own.mul(mapped)).max(0)
     sums.addAssign(vec4(seen, others, ofClouds.add(1).log().mul(seen)))
