@@ -123,7 +123,7 @@ export const fallExtinctions = /*#__PURE__*/ Fn(
 export const snowShare = (altitude: Float, freezingLevel: Float): Float =>
   smoothstep(freezingLevel.sub(fallForm.melting), freezingLevel, altitude).toConst()
 
-/** Where something is and what is above it, for what falls there from a layer. */
+/** Place at which something falls from a layer, and the layer. */
 interface FallPlace {
   readonly field: CloudField
   readonly map: WeatherMap | undefined
