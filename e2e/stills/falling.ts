@@ -28,11 +28,11 @@ export const falling = [
     clouds: {
       preset: 'altocumulus',
       layer: {
-        topAltitude: 4300,
+        topAltitude: 4600,
         coverage: 0.25,
-        weatherScale: 0.7,
+        weatherScale: 0.5,
         shapeScale: 0.7,
-        precipitation: { rate: 1, share: 0.6, virgaDepth: 900, freezingLevel: 0, streaks: 1.3 }
+        precipitation: { rate: 4, share: 0.9, virgaDepth: 1500, freezingLevel: 0 }
       }
     },
     place: { longitude: 20, latitude: 45 },

@@ -254,8 +254,7 @@ gpuTest(
             rateUnder(column) * hail * MathUtils.smoothstep(column, ...fallForm.hailFrom)
           const drops = rateUnder(rank) - hailUnder(rank)
           const snow = MathUtils.smoothstep(altitude, 600 - fallForm.melting, 600)
-          const stones =
-            hail > 0 ? hailUnder(fallenRank(places, twin, 0, at, distance, true)) : 0
+          const stones = hail > 0 ? hailUnder(fallenRank(places, twin, 0, at, distance, true)) : 0
           depth += (extinctionOf(drops, snow, stones) * RAIN_DEPTH) / COLUMN_STEPS
         }
         if (depth > 0.01) wet++

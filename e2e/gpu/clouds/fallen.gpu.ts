@@ -136,12 +136,19 @@ gpuTest(
     const inputs = Array.from({ length: 300 }, (_, i) => [-i * step, 0, 0, 0])
     const found = await evaluateOnGpu(renderer, inputs, input => {
       const column = {
-        fallAt: (_: Int, subpoint: Vec3) => vec4(subpoint.dot(east).greaterThan(0).select(1, -1), 0, 0, 0)
+        fallAt: (_: Int, subpoint: Vec3) =>
+          vec4(subpoint.dot(east).greaterThan(0).select(1, -1), 0, 0, 0)
       } as unknown as WeatherMap
       const up = field.view.up.toConst() as Vec3
       const offset = east.mul(input.x).sub(up.mul(field.view.height)).toConst() as Vec3
       const sample = { offset, altitude: float(0), up, distance: float(100) }
-      const { rate, hail } = fallenFrom(field, column, layerAt(field, int(0)), medium.fallOf(int(0)), sample)
+      const { rate, hail } = fallenFrom(
+        field,
+        column,
+        layerAt(field, int(0)),
+        medium.fallOf(int(0)),
+        sample
+      )
       return vec4(rate, hail, 0, 1)
     })
     const lags = [0, 1].map(k => step * inputs.filter((_, i) => found[4 * i + k] > 0).length)

@@ -27,13 +27,10 @@ const MAXIMUM_DISTANCE = 60_000
 const EVEN = 20_000
 
 /**
- * Greatest distance over the ground from the camera at which the map has what falls [m]: texels are 140 m wide below the
- * camera, 13 km there. Nearer: far shafts vanish (*Rain and snow*).
+ * Greatest distance over the ground from the camera at which the map has what falls [m]: texels are 90 m wide below the
+ * camera, 9 km there. Nearer: far shafts vanish (*Rain and snow*).
  */
 const FALL_DISTANCE = 180_000
-
-/** Texels along the edge of what falls, in the middle of its tile: it is smooth, and the search for storms is long. */
-const FALL_SIZE = 256
 
 /**
  * Distance within which texels of the map of whole regions are about as wide, over that of the farthest clouds in sight. Greater:
@@ -55,7 +52,6 @@ const STALE = 4
 
 /** Farthest from the middle of a tile that it is looked up, with the texels next to those, in texture coordinates of the tile. */
 const RIM = 0.5 + 2 / SIZE
-const FALL_RIM = (FALL_SIZE / 2 + 2) / SIZE
 
 /**
  * Texture coordinates of a tile per unit of position, from its middle.
@@ -66,7 +62,7 @@ const perPosition = (size: number, even: number): number =>
   ((size - 2 * MARGIN) / (2 * size)) * (1 + even)
 
 const PER_POSITION = perPosition(SIZE, EVEN / MAXIMUM_DISTANCE)
-const FALL_PER_POSITION = (perPosition(FALL_SIZE, EVEN / FALL_DISTANCE) * FALL_SIZE) / SIZE
+const FALL_PER_POSITION = perPosition(SIZE, EVEN / FALL_DISTANCE)
 const REGIONAL_PER_POSITION = perPosition(REGIONAL_SIZE, REGIONAL_EVEN)
 
 /** A place that a texel of a map stands for. */
@@ -170,7 +166,7 @@ export class WeatherMap {
       // Nothing falls.
       const found = vec4(-1, 0, 0, 0).toVar() as Variable<Vec4>
       // Corners are never looked up.
-      const isInCircle = at.fract().sub(0.5).length().lessThan(isFall.select(FALL_RIM, RIM))
+      const isInCircle = at.fract().sub(0.5).length().lessThan(RIM)
       const fall = fallOf?.(index)
       const isWanted = fall && isFall.not().or(fall.rate.greaterThan(0))
       If(isWanted?.and(isInCircle) ?? isInCircle, () => {

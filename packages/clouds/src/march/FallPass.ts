@@ -15,7 +15,7 @@ export interface FallScene extends ShadingContext {
   readonly viewRays: FrameInputs
 }
 
-/** What falls on a marched ray, and the ray's log₂ of its end and part of its steps. */
+/** Precipitation on a marched ray, and the ray's log₂ of its end and part of its steps. */
 export interface FallOnPixel extends FallOnRay {
   readonly end: Float
   readonly steps: Float
@@ -25,7 +25,7 @@ export interface FallOnPixel extends FallOnRay {
 const BEHIND = 0.5
 
 /**
- * What falls on the rays of a frame, with its light: a pass between the march and the light of the clouds. In a shader with the clouds', fewer rays at
+ * Precipitation on the rays of a frame, with its light: a pass between the march and the light of the clouds. In a shader with the clouds', fewer rays at
  * a time would be under way. What it writes stands in for the march's, so that the clouds' light samples no more textures with it than without.
  */
 export class FallPass {
@@ -61,7 +61,7 @@ export class FallPass {
     this.#pass.render(renderer, this.#target)
   }
 
-  /** What falls on the ray of a pixel. To be called inside of a shader function. */
+  /** Precipitation on the ray of a pixel. To be called inside of a shader function. */
   read(here: Vec2): FallOnPixel {
     const [radiance, ray] = this.#fallen.map(each => each.sample(here).level(0).toConst() as Vec4)
     const steps = ray.w.floor().toConst() as Float

@@ -32,7 +32,7 @@ export interface PrecipitationShaftsOptions {
   drops?: ScatteringPhase | null
 }
 
-/** What falls on a ray, and what the ray sees behind it. */
+/** Precipitation on a ray, and what the ray sees behind it. */
 export interface FallOnRay {
   /** Spectral radiance for unit irradiance of the bare sun [1/sr]. */
   readonly radiance: Vec4
@@ -255,7 +255,7 @@ export class PrecipitationShafts {
   }
 
   /**
-   * What falls before and behind the clouds of a ray, with its light. To be called inside of a shader function.
+   * Precipitation before and behind the clouds of a ray, with its light. To be called inside of a shader function.
    *
    * @param ray - Its direction, noise in [0, 1), what was marched (log₂ of the clouds' distance and of its end, transmittance), and
    *   parts of the light that casters leave at {@link placesOn}, if there are any.

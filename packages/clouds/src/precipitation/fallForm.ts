@@ -57,8 +57,8 @@ export const extinctionForm = {
 export const STRONGEST = 6
 
 /**
- * What is cut off above `STRONGEST`, made up for: from a deviation of logarithms on, by a factor of the square of the rest, in the median's
- * logarithm [–]. Fitted: means are 1 to 0.9 % up to a deviation of 2.5.
+ * Rise of the median that makes up for what is cut off above `STRONGEST`: in its logarithm, a factor of the square of what the deviation of
+ * logarithms has over `from` [–]. Fitted: means are 1 to 0.9 % up to a deviation of 2.5.
  */
 export const streakBound = { from: 0.75, factor: 0.435 } as const
 

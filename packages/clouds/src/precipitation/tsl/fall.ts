@@ -123,7 +123,7 @@ export const fallExtinctions = /*#__PURE__*/ Fn(
 export const snowShare = (altitude: Float, freezingLevel: Float): Float =>
   smoothstep(freezingLevel.sub(fallForm.melting), freezingLevel, altitude).toConst()
 
-/** Where something is and what is above it, for what falls there from a layer. */
+/** Place at which something falls from a layer, and the layer. */
 interface FallPlace {
   readonly field: CloudField
   readonly map: WeatherMap | undefined
@@ -190,13 +190,12 @@ export function fallenFrom(
   const rate = float(0).toVar() as Variable<Float>
   const hail = float(0).toVar() as Variable<Float>
   const rank = float(0).toVar() as Variable<Float>
-  const { baseAltitude } = layer
   const { altitude, distance } = sample
   If(nodes.rate.greaterThan(0).and(altitude.lessThan(nodes.ceiling)), () => {
-    const depth = baseAltitude.sub(altitude).max(0).toConst() as Float
+    const depth = layer.baseAltitude.sub(altitude).max(0).toConst() as Float
     const footprint = distance.mul(field.pixelAngle).toConst() as Float
     const place: FallPlace = { field, map, layer, nodes, sample, depth, footprint }
-    const lag = fallLag(altitude, baseAltitude, nodes.freezingLevel).toConst() as Vec2
+    const lag = fallLag(altitude, layer.baseAltitude, nodes.freezingLevel).toConst() as Vec2
     const fallen = fallAlong(lag, place)
     rank.assign(fallen.rank)
     rate.assign(fallen.rate)
