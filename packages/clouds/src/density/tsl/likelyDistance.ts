@@ -20,7 +20,7 @@ export const NOWHERE = 1e6
  * Distance over which the strength of clear air changes by 1 in the mean towards a cloud [periods of the
  * shape]. Greater: faster, and small clouds are missed here and there, as grain (*Cumulus*).
  */
-const LIKELY = 0.006
+const LIKELY = 0.007
 
 /**
  * `LIKELY` in layers of storms. Their strength is a distance, but heads on heads are steeper by far. Greater: heads are
@@ -54,7 +54,7 @@ export const nearStorms = (layer: LayerNodes): Float =>
  * rules them out [–]. Smaller: faster, and heads of far clouds are missed by whole rows of pixels: cumulus look as if made of
  * plates (*Presets*).
  */
-const MOST_BILLOWS = 3
+const MOST_BILLOWS = 2.5
 const ANVIL = 99
 
 /**
