@@ -243,7 +243,8 @@ gpuTest(
       await nextFrame()
       const taken = difference(await drawIn(pipelines[i]), alone[i]) / sum
       t.note(`${taken.toFixed(3)} is taken by shadows`)
-      expectTrue(taken > 4 * grain, `camera ${i}: shadows take light`)
+      // More than pictures of the same camera may be apart.
+      expectTrue(taken > 1.5 * grain, `camera ${i}: shadows take light`)
     }
     for (const owned of [node, pipeline, scenePass, shafts, table, noise, first]) owned.dispose()
   },

@@ -61,7 +61,7 @@ export const qualities = {
   }
 } as const satisfies Record<string, Quality>
 
-/** Fineness of the march of light shafts: `'reference'` has 512 samples a pixel, to compare others with, and takes tens of milliseconds. */
+/** Fineness of the march of light shafts: `'reference'` has 512 samples a pixel, to compare others with, and takes 160 ms and more. */
 export type LightShaftsQuality = keyof typeof qualities
 
 /** Longer edge of pictures from which on they have a quality's spacing [pixels]. */
