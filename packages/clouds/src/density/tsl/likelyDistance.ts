@@ -50,7 +50,7 @@ export const nearStorms = (layer: LayerNodes): Float =>
   float(stormBillows.most * LIKELY_OF_STORMS).div(layer.perShapePeriod)
 
 /**
- * Most strength that billows add to clear air, and what anvils add: they spread from column to column, and so no background
+ * Strength that billows add to clear air in nearly all places, and what anvils add: they spread from column to column, and so no background
  * rules them out [–]. Smaller: faster, and heads of far clouds are missed by whole rows of pixels: cumulus look as if made of
  * plates (*Presets*).
  */
