@@ -123,7 +123,8 @@ async function metered(
   const exposure = autoExposure(isTexture ? color : color.mul(1), atmosphere, {
     darkNights: false,
     centerWeight: 0.5,
-    percentiles: [0.1, 0.97]
+    percentiles: [0.1, 0.97],
+    highlightPriority: 0
   })
   const pipeline = new RenderPipeline(renderer)
   pipeline.outputNode = exposure

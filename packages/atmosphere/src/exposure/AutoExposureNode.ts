@@ -5,7 +5,7 @@ import { checkBoolean, checkFinite, checkNonNegative, fail, setOptions } from '@
 import type { Atmosphere } from '../Atmosphere'
 import { checkRange } from '../check'
 import { checkAtmosphere } from '../view/ViewNodes'
-import { adaptedScale, exposedScale } from './cpu/exposedScale'
+import { adaptedScale, exposedScale, type MeteredLuminance } from './cpu/exposedScale'
 import { cellWeights, meteredLogLuminance, meterForm } from './cpu/meteredLuminance'
 import { ExposedNode } from './ExposedNode'
 import { ExposureMeter, type MeterReading } from './ExposureMeter'
@@ -23,6 +23,8 @@ export interface AutoExposureOptions {
   percentiles?: readonly [number, number]
   /** See {@link AutoExposureNode.centerWeight}; by default 0.5. */
   centerWeight?: number
+  /** See {@link AutoExposureNode.highlightPriority}; by default 0.6. */
+  highlightPriority?: number
   /** See {@link AutoExposureNode.lightSeconds}; by default 0.4. */
   lightSeconds?: number
   /** See {@link AutoExposureNode.darkSeconds}; by default 1.2. */
@@ -40,6 +42,7 @@ const SETTINGS = [
   'limits',
   'percentiles',
   'centerWeight',
+  'highlightPriority',
   'lightSeconds',
   'darkSeconds',
   'darkNights',
@@ -78,8 +81,8 @@ function checkRising(
  * Put it after air and clouds, before bloom; by day the picture passes unchanged, by night as eyes see it:
  * {@link purkinjeShift}. A scene whose materials draw the air themselves has `pass(scene, camera)` as colour. What is no texture yet is drawn to one of the picture's size.
  *
- * From a histogram of log2 luminance the mean between two {@link percentiles} becomes 0.17, and the upper percentile no more
- * than 8: for tone mappings with soft highlights, such as `AgXToneMapping` and `ACESFilmicToneMapping`. What is over
+ * From a histogram of log2 luminance the mean between two {@link percentiles} becomes 0.17, less where a large part is much
+ * brighter ({@link highlightPriority}), and the upper percentile no more than 8: for tone mappings with soft highlights, such as `AgXToneMapping` and `ACESFilmicToneMapping`. What is over
  * 8 stops darker than the upper percentile counts less and over 12 not at all, so the black of space does not. The picture
  * is read back a frame or more later, without a wait, one at a time.
  *
@@ -98,8 +101,7 @@ export class AutoExposureNode extends Node<'vec4'> {
   readonly #picture: TextureNode
   readonly #meter = new ExposureMeter()
   #reading: MeterReading | null = null
-  /** Luminance of the reading: mean, and upper percentile [cd/m²]. */
-  #luminance: { mean: number; bright: number } | null = null
+  #luminance: MeteredLuminance | null = null
   /** True if nothing was seen in the reading. */
   #isBlack = false
   /** False before the first scale for a picture that is not black. */
@@ -109,6 +111,7 @@ export class AutoExposureNode extends Node<'vec4'> {
   #limits: readonly [number, number] = [1e-4, 1e9]
   #percentiles: readonly [number, number] = [0.1, 0.97]
   #centerWeight = 0.5
+  #highlightPriority = 0.6
   #lightSeconds = 0.4
   #darkSeconds = 1.2
   #darkNights = true
@@ -179,6 +182,20 @@ export class AutoExposureNode extends Node<'vec4'> {
     this.#evaluate()
   }
 
+  /**
+   * How far a bright part gives way to the rest, in [0, 1]. Where a tenth of the picture would be over 0.8, as the sky over a valley
+   * after sunset, the picture is darker by this part of the stops over that: 0 exposes for the mean alone and lets such a sky
+   * go white, 1 keeps it and leaves the land dark [–].
+   */
+  get highlightPriority(): number {
+    return this.#highlightPriority
+  }
+
+  set highlightPriority(value: number) {
+    checkRange(WHERE, 'highlightPriority', value, 0, 1)
+    this.#highlightPriority = value
+  }
+
   /** Time in which 63 % of the stops to a brighter scene are taken, ≥ 0; 0 adapts at once [s]. */
   get lightSeconds(): number {
     return this.#lightSeconds
@@ -233,7 +250,7 @@ export class AutoExposureNode extends Node<'vec4'> {
   /** `luminanceScale` that is adapted to; null before the first reading [1/(cd/m²)]. */
   get targetScale(): number | null {
     if (this.#luminance === null) return null
-    return exposedScale(this.#luminance.mean, this.#luminance.bright, this)
+    return exposedScale(this.#luminance, this)
   }
 
   /**
@@ -287,10 +304,14 @@ export class AutoExposureNode extends Node<'vec4'> {
   #evaluate(): void {
     if (this.#reading === null) return
     const { logs, scale } = this.#reading
-    const { mean, bright } = meteredLogLuminance(logs, this.#weights, this.#percentiles)
+    const { mean, light, bright } = meteredLogLuminance(logs, this.#weights, this.#percentiles)
     this.#isBlack = bright <= meterForm.darkest
     // By the scale of that picture: there may be another by now.
-    this.#luminance = { mean: 2 ** mean / scale, bright: 2 ** bright / scale }
+    this.#luminance = {
+      mean: 2 ** mean / scale,
+      light: 2 ** light / scale,
+      bright: 2 ** bright / scale
+    }
   }
 
   override setup(): Node {

@@ -4,7 +4,11 @@ import { texture } from 'three/tsl'
 import type { NodeFrame, Renderer } from 'three/webgpu'
 import { describe, expect, it } from 'vitest'
 import { Atmosphere, autoExposure, DayCycle, type AutoExposureOptions } from '@welkin/atmosphere'
-import { adaptedScale, exposedScale } from '../../src/exposure/cpu/exposedScale'
+import {
+  adaptedScale,
+  exposedScale,
+  type MeteredLuminance
+} from '../../src/exposure/cpu/exposedScale'
 import {
   cellWeights,
   meteredLogLuminance,
@@ -14,7 +18,18 @@ import { number, runs } from '../arbitraries'
 
 const COUNT = meterForm.cells[0] * meterForm.cells[1] * 4
 const even = cellWeights(0)
-const settings = { compensation: 0, limits: [1e-9, 1e12], darkNights: false } as const
+const settings = {
+  compensation: 0,
+  limits: [1e-9, 1e12],
+  darkNights: false,
+  highlightPriority: 0.6
+} as const
+/** An even picture's luminances. */
+const evenly = (luminance: number): MeteredLuminance => ({
+  mean: luminance,
+  light: luminance,
+  bright: luminance
+})
 
 /** Samples of which parts, from the first on, have values. */
 function samples(...parts: readonly [part: number, log: number][]): Float64Array {
@@ -43,6 +58,7 @@ describe('metered luminance', () => {
           const logs = new Float64Array(COUNT).fill(log)
           const metered = meteredLogLuminance(logs, cellWeights(middle), [low, high])
           expect(metered.mean).toBeCloseTo(log, 9)
+          expect(metered.light).toBeCloseTo(log, 9)
           expect(metered.bright).toBeCloseTo(log, 9)
         }
       ),
@@ -94,7 +110,7 @@ describe('exposed scale', () => {
   it('shows any light as middle grey, and compensation in stops', () => {
     fc.assert(
       fc.property(number(1e-6, 1e6), number(-5, 5), (luminance, compensation) => {
-        const scale = exposedScale(luminance, luminance, { ...settings, compensation })
+        const scale = exposedScale(evenly(luminance), { ...settings, compensation })
         expect(Math.log2((scale * luminance) / 0.17)).toBeCloseTo(compensation, 9)
       }),
       runs
@@ -103,7 +119,7 @@ describe('exposed scale', () => {
 
   it('shows nights the darker the less light there is, unless told otherwise', () => {
     const shown = (luminance: number, darkNights: boolean): number =>
-      luminance * exposedScale(luminance, luminance, { ...settings, darkNights })
+      luminance * exposedScale(evenly(luminance), { ...settings, darkNights })
     fc.assert(
       fc.property(number(-6, 4), number(0.1, 2), (log, step) => {
         expect(shown(10 ** log, true)).toBeLessThan(shown(10 ** (log + step), true))
@@ -119,9 +135,25 @@ describe('exposed scale', () => {
 
   it('keeps to its limits, and the bright below white', () => {
     const limited = { ...settings, limits: [1, 100] } as const
-    expect(exposedScale(1e-3, 1e-3, limited)).toBe(exposedScale(1, 1, limited))
-    expect(exposedScale(1e6, 1e6, limited)).toBe(exposedScale(100, 100, limited))
-    expect(1e5 * exposedScale(10, 1e5, settings)).toBeCloseTo(8, 9)
+    expect(exposedScale(evenly(1e-3), limited)).toBe(exposedScale(evenly(1), limited))
+    expect(exposedScale(evenly(1e6), limited)).toBe(exposedScale(evenly(100), limited))
+    expect(1e5 * exposedScale({ mean: 10, light: 10, bright: 1e5 }, settings)).toBeCloseTo(8, 9)
+  })
+
+  it('gives way to a bright tenth by the part of its stops over 0.8 that it is told', () => {
+    const land = { mean: 1, light: 16, bright: 20 }
+    const shown = (highlightPriority: number): number =>
+      exposedScale(land, { ...settings, highlightPriority })
+    expect(shown(0)).toBeCloseTo(0.17, 9)
+    expect(16 * shown(1)).toBeCloseTo(0.8, 9)
+    expect(shown(0.5) ** 2).toBeCloseTo(shown(0) * shown(1), 9)
+    // What is not over it changes nothing.
+    const mild = { mean: 1, light: 4.7, bright: 5 }
+    expect(exposedScale(mild, settings)).toBeCloseTo(0.17, 9)
+    const logs = samples([0.85, -3], [0.15, 1])
+    expect(meteredLogLuminance(logs, even, [0.1, 0.97])).toMatchObject({ light: 1, bright: 1 })
+    const few = samples([0.95, -3], [0.05, 1])
+    expect(meteredLogLuminance(few, even, [0.1, 0.97])).toMatchObject({ light: -3, bright: 1 })
   })
 
   it('takes 63 % of the stops in its time, however that is cut into steps', () => {

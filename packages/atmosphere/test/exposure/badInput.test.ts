@@ -76,6 +76,7 @@ throwsEach('exposure', [
       [{ limits: wrong(1) }, 'limits must be an array of 2 numbers, got 1'],
       [{ percentiles: [0.6, 0.4] }, 'percentiles must rise, got [0.6, 0.4]'],
       [{ percentiles: [0, 1.1] }, 'percentiles[1] must be in [0, 1], got 1.1'],
+      [{ highlightPriority: 1.1 }, 'highlightPriority must be in [0, 1], got 1.1'],
       [{ centerWeight: -1 }, 'centerWeight must be in [0, 1], got -1'],
       [{ lightSeconds: -1 }, 'lightSeconds must be finite and ≥ 0, got -1'],
       [{ darkSeconds: Infinity }, 'darkSeconds must be finite and ≥ 0, got Infinity'],

@@ -12,6 +12,9 @@ const DAYLIGHT_LUMINANCE = 5000
  */
 const HIGHLIGHT = 8
 
+/** Luminance that a tenth of the picture may exceed [–]: shown as 0.85 of white in sRGB by `photographicToneMapping`. */
+const LIGHT = 0.8
+
 /** Settings of an automatic exposure that need no picture. */
 export interface ExposureSettings {
   /** Brightness over what is metered [EV]. */
@@ -20,6 +23,18 @@ export interface ExposureSettings {
   limits: readonly [number, number]
   /** Pictures of dark scenes are darker. */
   darkNights: boolean
+  /** Part of the stops that the brightest tenth has over {@link LIGHT} by which the picture is darker, in [0, 1]. */
+  highlightPriority: number
+}
+
+/** What a picture is exposed for [cd/m²]. */
+export interface MeteredLuminance {
+  /** Mean, in logarithms. */
+  mean: number
+  /** Exceeded by a tenth of the picture. */
+  light: number
+  /** Upper percentile. */
+  bright: number
 }
 
 /**
@@ -34,20 +49,21 @@ const pictureLuminance = (luminance: number): number =>
 /**
  * Scale by which a metered luminance shows as middle grey, or darker by night.
  *
- * @param mean - Metered luminance, > 0 [cd/m²].
- * @param bright - Luminance of the upper percentile, > 0 [cd/m²].
+ * @param metered - Luminances, each > 0.
  * @returns `luminanceScale`, > 0 [1/(cd/m²)].
  */
 export function exposedScale(
-  mean: number,
-  bright: number,
-  { compensation, limits, darkNights }: ExposureSettings
+  metered: MeteredLuminance,
+  { compensation, limits, darkNights, highlightPriority }: ExposureSettings
 ): number {
   const [least, greatest] = limits
-  const luminance = Math.min(Math.max(mean, least), greatest)
+  const [luminance, light, bright] = [metered.mean, metered.light, metered.bright].map(value =>
+    Math.min(Math.max(value, least), greatest)
+  )
   const key = darkNights ? pictureLuminance(luminance) : MIDDLE_GREY
-  const highlight = Math.min(Math.max(bright, least), greatest)
-  return 2 ** compensation * Math.min(key / luminance, HIGHLIGHT / highlight)
+  const even = key / luminance
+  const excess = Math.max((light * even) / LIGHT, 1)
+  return 2 ** compensation * Math.min(even * excess ** -highlightPriority, HIGHLIGHT / bright)
 }
 
 /**

@@ -1,3 +1,5 @@
+import type { MeteredLuminance } from './exposedScale'
+
 /** Form of the meter: what it samples of a picture, and the luminances that it tells apart. */
 export const meterForm = {
   /** Cells of a picture that are metered, across and down; each has four samples. */
@@ -12,6 +14,9 @@ export const meterForm = {
 
 /** Bins of the histogram per stop. */
 const BINS_PER_STOP = 8
+
+/** Part of the picture that is no darker than what is told as `light`. */
+const LIGHT_PART = 0.1
 
 /** Stops under the upper percentile at which what is dark begins to count less, and counts no more. */
 const FADE = [8, 12] as const
@@ -78,15 +83,17 @@ function percentile({ weights, sums, total }: Histogram, part: number): number {
  * @param logs - Four samples a cell, row by row: log2 of luminance in any unit. {@link meterForm.darkest} and less, or not a
  *   number, is black and does not count.
  * @param weights - Weight of each cell.
- * @returns In the samples' unit; {@link meterForm.darkest} if all is black.
+ * @returns Mean, what a tenth of the picture exceeds, and the upper percentile, in the samples' unit;
+ *   {@link meterForm.darkest} if all is black.
  */
 export function meteredLogLuminance(
   logs: ArrayLike<number>,
   weights: ArrayLike<number>,
   percentiles: readonly [number, number]
-): { mean: number; bright: number } {
+): MeteredLuminance {
   const histogram = histogramOf(logs, weights)
-  if (histogram.total === 0) return { mean: meterForm.darkest, bright: meterForm.darkest }
+  const { darkest } = meterForm
+  if (histogram.total === 0) return { mean: darkest, light: darkest, bright: darkest }
   const [low, high] = percentiles.map(part => part * histogram.total)
   const bright = percentile(histogram, percentiles[1])
   let [below, sum, total] = [0, 0, 0]
@@ -99,5 +106,6 @@ export function meteredLogLuminance(
     sum += inside * seen * log
     total += inside * seen
   })
-  return { mean: total > 0 ? sum / total : bright, bright }
+  const light = percentile(histogram, 1 - LIGHT_PART)
+  return { mean: total > 0 ? sum / total : bright, light, bright }
 }
