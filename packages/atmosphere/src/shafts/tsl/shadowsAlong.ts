@@ -101,7 +101,8 @@ export function shadowAt(
   view: ViewUniforms,
   shadowedAir: ShadowedAir,
   ray: Omit<AirViewRay, 'view'>,
-  distance: Float
+  distance: Float,
+  readMap = darkPart as typeof ditheredDark
 ): { dark: Float; missing: Vec4 | null } {
   const { frame, maximumRho } = shadowedAir
   const { direction, jitter } = ray
@@ -110,7 +111,7 @@ export function shadowAt(
   const isMapped = distance.mul(sinViewLight).lessThan(maximumRho) as Bool
   // Many places are beyond the map.
   const polar = (): PolarRay => polarRay(frame, direction, cosViewLight)
-  const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, ray, polar, jitter, ditheredDark)
+  const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, ray, polar, jitter, readMap)
   return { dark: darkAt(distance, isMapped), missing: missingAt?.(distance) ?? null }
 }
 
