@@ -20,6 +20,7 @@ import {
   vec2,
   vec3
 } from 'three/tsl'
+import type { Texture } from 'three'
 import type { Node } from 'three/webgpu'
 import { createNoiseTexture } from '../globe/detailNoise'
 import { VILLAGE } from './places'
@@ -104,6 +105,16 @@ const SHADED = 140
 const CROWNS = 5
 const WOODED = 14_000
 
+/** Brightness of crowns' tops over the noise that they follow, and of what is between them. */
+const CANOPY = [-0.4, 0.35] as const
+
+/** Widths over which noise of rock repeats [m]; heights of its cracks over it [m]. Layers of rock are flatter than wide. */
+const CRACKS = [
+  [1240, 26],
+  [173, 4]
+] as const
+const LAYERED = 1.7
+
 /** Width of the edge of a wood, in its share of the ground. */
 const EDGE = 0.16
 
@@ -117,6 +128,38 @@ function grainNormal(normal: Node<'vec3'>, height: Node<'float'>): Node<'vec3'> 
     .add(second.mul(dFdy(height)))
     .mul(area.sign())
   return normal.mul(area.abs()).sub(slope).normalize()
+}
+
+/** Ways on the ground from a pixel to its neighbours [m]. */
+interface Footprint {
+  readonly right: Node<'vec3'>
+  readonly down: Node<'vec3'>
+}
+
+/**
+ * Noise of rock, seen from the side: from above, steep slopes would have streaks. Heights of cracks [m], and their brightness in [−1, 1].
+ *
+ * @param facing - Part of the wall that faces east or west.
+ */
+function cracksIn(
+  picture: Texture,
+  facing: Node<'float'>,
+  { right, down }: Footprint
+): { height: Node<'float'>; shade: Node<'float'> } {
+  const seenAlong = (wide: 'x' | 'z', period: number): Node<'float'> => {
+    const flat = (at: Node<'vec3'>): Node<'vec2'> => vec2(at[wide], at.y.mul(LAYERED)).div(period)
+    const noise = texture(picture, flat(positionWorld)).grad(flat(right), flat(down))
+    return noise.r.sub(0.5).mul(2)
+  }
+  let [height, shade]: Node<'float'>[] = [float(0), float(0)]
+  for (const [period, deep] of CRACKS) {
+    const noise = mix(seenAlong('x', period), seenAlong('z', period), facing).toConst()
+    // Cracks are sharp, what is between them is round.
+    const cracked = noise.abs().mul(1.6).min(1).sub(0.4).toConst()
+    height = height.add(cracked.mul(deep))
+    shade = shade.add(cracked.add(noise.mul(0.5)))
+  }
+  return { height, shade }
 }
 
 /** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
@@ -160,7 +203,7 @@ export function groundMaterial(
     })
     return sum
   })().toVar()
-  const clumps = noise(71).mul(upTo(2500)).toVar()
+  const clumps = texture(grazed, turnedBy(71)).r.sub(0.5).mul(2).mul(upTo(9000)).toVar()
   const fine = grain.add(clumps).add(patches).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const rough = broad.mul(0.5).add(patches).toVar()
@@ -173,14 +216,28 @@ export function groundMaterial(
   const wooded = cover.x.add(uneven.mul(smoothstep(0, 0.25, cover.x)))
   const forest = smoothstep(0.42 - EDGE, 0.42 + EDGE, wooded).toVar()
   const rocky = smoothstep(0.27, 0.42, slope).toVar()
-  const crowns = clumps.mul(0.6).add(patches).mul(CROWNS).mul(forest)
+  const footprint = { right: dFdx(positionWorld).toVar(), down: dFdy(positionWorld).toVar() }
+  const cracks = Fn(() => {
+    const found = vec2(0).toVar()
+    If(rocky.greaterThan(0), () => {
+      const { x, z } = broadNormal
+      const facing = smoothstep(0.35, 0.65, x.mul(x).div(x.mul(x).add(z.mul(z))))
+      const { height, shade } = cracksIn(grazed, facing, footprint)
+      found.assign(vec2(height, shade).mul(rocky))
+    })
+    return found
+  })().toVar()
+  const crowns = clumps.mul(1.3).add(patches).mul(CROWNS).mul(forest)
   // Seen along the ground, differences between pixels are those of noise.
   const facing = smoothstep(
     0.1,
     0.45,
     broadNormal.dot(cameraPosition.sub(positionWorld).normalize())
   )
-  const relieved = crowns.mul(upTo(WOODED).mul(facing)).add(grain.mul(GRASS).mul(upTo(SHADED)))
+  const relieved = crowns
+    .mul(upTo(WOODED).mul(facing))
+    .add(grain.mul(GRASS).mul(upTo(SHADED)))
+    .add(cracks.x)
   const normal = grainNormal(broadNormal, relieved).toVar()
   material.normalNode = transformNormalToView(normal)
   const dry = broad.mul(0.6).add(fine.mul(0.45)).add(0.45).clamp()
@@ -193,8 +250,10 @@ export function groundMaterial(
     })
     return ground
   })()
-  const trees = mix(vec3(0.01, 0.019, 0.008), vec3(0.036, 0.052, 0.019), fine.add(0.45).clamp())
-  const rock = mix(vec3(0.13, 0.125, 0.115), vec3(0.25, 0.235, 0.21), fine.mul(0.7).add(0.5))
+  const canopy = smoothstep(...CANOPY, clumps.add(patches.mul(0.4)))
+  const trees = mix(vec3(0.006, 0.012, 0.006), vec3(0.04, 0.056, 0.02), canopy)
+  const weathered = fine.mul(0.35).add(cracks.y.mul(0.55)).add(0.5).clamp()
+  const rock = mix(vec3(0.105, 0.1, 0.094), vec3(0.29, 0.274, 0.247), weathered)
   const alpine = mix(
     vec3(0.095, 0.1, 0.045),
     rock,
@@ -218,7 +277,9 @@ export function groundMaterial(
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
   // Of woods one sees the trunks and the undersides of branches, too.
   const dark = forest.mul(fine.mul(0.25).add(WOODS)).clamp()
-  const whitened = snow.mul(smoothstep(0.46, 0.3, slope)).mul(dark.oneMinus())
+  // It lies in cracks, and is blown off what is between them.
+  const steep = slope.add(cracks.y.mul(0.06))
+  const whitened = snow.mul(smoothstep(0.46, 0.3, steep)).mul(dark.oneMinus())
   color = mix(color, white, whitened)
   material.colorNode = color
   material.emissiveNode = lamplight
