@@ -20,7 +20,7 @@ import {
   vec2,
   vec3
 } from 'three/tsl'
-import type { Texture } from 'three'
+import { FrontSide, type Texture } from 'three'
 import type { Node } from 'three/webgpu'
 import { createNoiseTexture } from '../globe/detailNoise'
 import { VILLAGE } from './places'
@@ -94,8 +94,9 @@ function roadAt(): Node<'float'> {
   return smoothstep(HALF_ROAD + 0.6, HALF_ROAD - 0.4, x.sub(middle).abs()).mul(isSouth)
 }
 
-/** Distance within which the finest grain of the ground is drawn [m]. */
+/** Distances within which the finest grain of the ground is drawn, and that of tufts [m]. */
 const NEAR = 200
+const MIDDLE = 900
 
 /** Height of grass and stones over the noise that they follow [m], and distance within which they shade themselves [m]. */
 const GRASS = 0.1
@@ -110,7 +111,7 @@ const CANOPY = [-0.4, 0.35] as const
 
 /** Widths over which noise of rock repeats [m]; heights of its cracks over it [m]. Layers of rock are flatter than wide. */
 const CRACKS = [
-  [1240, 26],
+  [1240, 20],
   [173, 4]
 ] as const
 const LAYERED = 1.7
@@ -137,29 +138,27 @@ interface Footprint {
 }
 
 /**
- * Noise of rock, seen from the side: from above, steep slopes would have streaks. Heights of cracks [m], and their brightness in [−1, 1].
+ * Noise of rock, seen from the side: from above, steep slopes would have streaks. Height of cracks [m], and their brightness in [−1, 1].
  *
- * @param facing - Part of the wall that faces east or west.
+ * @param isEastern - True for walls that face east or west rather than north or south.
  */
 function cracksIn(
   picture: Texture,
-  facing: Node<'float'>,
+  isEastern: Node<'bool'>,
   { right, down }: Footprint
-): { height: Node<'float'>; shade: Node<'float'> } {
-  const seenAlong = (wide: 'x' | 'z', period: number): Node<'float'> => {
-    const flat = (at: Node<'vec3'>): Node<'vec2'> => vec2(at[wide], at.y.mul(LAYERED)).div(period)
-    const noise = texture(picture, flat(positionWorld)).grad(flat(right), flat(down))
-    return noise.r.sub(0.5).mul(2)
-  }
-  let [height, shade]: Node<'float'>[] = [float(0), float(0)]
+): Node<'vec2'> {
+  const flat = (at: Node<'vec3'>): Node<'vec2'> =>
+    vec2(isEastern.select(at.z, at.x), at.y.mul(LAYERED)).toConst()
+  const [place, across, along] = [flat(positionWorld), flat(right), flat(down)]
+  let sum: Node<'vec2'> = vec2(0)
   for (const [period, deep] of CRACKS) {
-    const noise = mix(seenAlong('x', period), seenAlong('z', period), facing).toConst()
+    const [at, ...change] = [place, across, along].map(each => each.div(period))
+    const noise = texture(picture, at).grad(change[0], change[1]).r.sub(0.5).mul(2).toConst()
     // Cracks are sharp, what is between them is round.
     const cracked = noise.abs().mul(1.6).min(1).sub(0.4).toConst()
-    height = height.add(cracked.mul(deep))
-    shade = shade.add(cracked.add(noise.mul(0.5)))
+    sum = sum.add(vec2(cracked.mul(deep), cracked.add(noise.mul(0.5))))
   }
-  return { height, shade }
+  return sum
 }
 
 /** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
@@ -168,14 +167,16 @@ export function groundMaterial(
   relief: Relief,
   lamplight: Node<'vec3'> | null
 ): VertexLitMaterial {
-  const material = new VertexLitMaterial()
+  // It has no thickness: cast by its far side, shadows would begin below it, and air and fog close to a shaded slope be lit.
+  const material = new VertexLitMaterial({ shadowSide: FrontSide })
   const place = positionWorld.xz
   const picture = createNoiseTexture()
   // Each of its many scales is blurred far away: there are coarser ones. The finest are seen along the ground.
-  const grazed = picture.clone()
+  const [sharper, grazed] = [picture.clone(), picture.clone()]
   picture.anisotropy = 1
+  sharper.anisotropy = 2
   grazed.anisotropy = 4
-  for (const each of [picture, grazed]) {
+  for (const each of [picture, sharper, grazed]) {
     material.addEventListener('dispose', () => each.dispose())
   }
   // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned. Seen from
@@ -194,16 +195,23 @@ export function groundMaterial(
   const near = turnedBy(1.9).toVar()
   const [across, along] = [dFdx(near).toVar(), dFdy(near).toVar()]
   // Its cells are seen near by: bent, they are no squares.
-  const bent = turnedBy(11.3).add(sin(turnedBy(0.9).yx).mul(0.05))
+  const bent = turnedBy(11.3)
+    .add(sin(turnedBy(0.9).yx).mul(0.05))
+    .toVar()
+  const [bentAcross, bentAlong] = [dFdx(bent).toVar(), dFdy(bent).toVar()]
   const grain = Fn(() => {
-    const sum = noiseAt(bent).mul(0.6).mul(upTo(900)).toVar()
+    const sum = float(0).toVar()
+    If(distance.lessThan(MIDDLE), () => {
+      const tufts = texture(picture, bent).grad(bentAcross, bentAlong).r.sub(0.5).mul(1.2)
+      sum.assign(tufts.mul(upTo(MIDDLE)))
+    })
     If(distance.lessThan(NEAR), () => {
       const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(1.6)
       sum.addAssign(finest.mul(upTo(NEAR)))
     })
     return sum
   })().toVar()
-  const clumps = texture(grazed, turnedBy(71)).r.sub(0.5).mul(2).mul(upTo(9000)).toVar()
+  const clumps = texture(sharper, turnedBy(71)).r.sub(0.5).mul(2).mul(upTo(9000)).toVar()
   const fine = grain.add(clumps).add(patches).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const rough = broad.mul(0.5).add(patches).toVar()
@@ -220,10 +228,9 @@ export function groundMaterial(
   const cracks = Fn(() => {
     const found = vec2(0).toVar()
     If(rocky.greaterThan(0), () => {
-      const { x, z } = broadNormal
-      const facing = smoothstep(0.35, 0.65, x.mul(x).div(x.mul(x).add(z.mul(z))))
-      const { height, shade } = cracksIn(grazed, facing, footprint)
-      found.assign(vec2(height, shade).mul(rocky))
+      // Where walls turn, noise parts one from the other.
+      const isEastern = broadNormal.x.abs().sub(broadNormal.z.abs()).greaterThan(fine.mul(0.25))
+      found.assign(cracksIn(grazed, isEastern, footprint).mul(rocky))
     })
     return found
   })().toVar()
@@ -262,7 +269,7 @@ export function groundMaterial(
   // Tufts stand in the light, gaps between them are dark.
   const tuft = smoothstep(-0.4, 0.45, grain)
     .sub(0.5)
-    .mul(upTo(900).mul(clumps.mul(0.9).add(0.65).clamp(0.15, 1.2)))
+    .mul(upTo(MIDDLE).mul(clumps.mul(0.9).add(0.65).clamp(0.15, 1.2)))
     .toVar()
   const hue = mix(vec3(0.93, 1.02, 0.86), vec3(1.08, 0.99, 1.06), tuft.add(0.5))
   const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.42)))

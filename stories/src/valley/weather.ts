@@ -46,8 +46,8 @@ const deckForm = {
 const fogForm: typeof deckForm = {
   baseAltitude: 595,
   topAltitude: 690,
-  density: 0.02,
-  weatherScale: 0.2,
+  density: 0.015,
+  weatherScale: 0.3,
   shapeScale: 0.25,
   detailAmount: 0,
   edgeSoftness: 0.8,
@@ -65,9 +65,6 @@ export const valleyLayers = [
   },
   { ...cloudPreset('cirrus').at(0).parameters, coverage: 0, wind: { east: 26, north: -8 } }
 ]
-
-/** Share of the valley that banks of fog cover in the mist. */
-const FOGGY = 0.95
 
 /** Most steps to the light, and least depth of a step, in banks of fog: they are soft, and have no bumps that shade each other. */
 const FOG_STEPS = { light: 1, depth: 1 }
@@ -152,7 +149,7 @@ export class WeatherBlend {
     // The deck and banks of fog are one layer: one goes before the other comes.
     const foggy = this.#fog(hasMist)
     layers.at(1).set(foggy > 0 ? fogForm : deckForm)
-    const covers = [cumulus, foggy > 0 ? foggy * FOGGY : -foggy, cirrus]
+    const covers = [cumulus, Math.abs(foggy), cirrus]
     const freezingLevel = snow > 0 ? 0 : FREEZING
     for (const [i, coverage] of covers.entries()) {
       const rate = hasClouds && falls ? rates[i] : 0

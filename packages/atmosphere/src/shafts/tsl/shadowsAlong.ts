@@ -102,7 +102,7 @@ export function shadowAt(
   shadowedAir: ShadowedAir,
   ray: Omit<AirViewRay, 'view'>,
   distance: Float,
-  readMap = darkPart as typeof ditheredDark
+  readMap?: typeof ditheredDark
 ): { dark: Float; missing: Vec4 | null } {
   const { frame, maximumRho } = shadowedAir
   const { direction, jitter } = ray
