@@ -20,7 +20,7 @@ import {
   vec2,
   vec3
 } from 'three/tsl'
-import { FrontSide, type Texture } from 'three'
+import type { Texture } from 'three'
 import type { Node } from 'three/webgpu'
 import { createNoiseTexture } from '../globe/detailNoise'
 import { VILLAGE } from './places'
@@ -167,16 +167,14 @@ export function groundMaterial(
   relief: Relief,
   lamplight: Node<'vec3'> | null
 ): VertexLitMaterial {
-  // It has no thickness: cast by its far side, shadows would begin below it, and air and fog close to a shaded slope be lit.
-  const material = new VertexLitMaterial({ shadowSide: FrontSide })
+  const material = new VertexLitMaterial()
   const place = positionWorld.xz
   const picture = createNoiseTexture()
   // Each of its many scales is blurred far away: there are coarser ones. The finest are seen along the ground.
-  const [sharper, grazed] = [picture.clone(), picture.clone()]
+  const grazed = picture.clone()
   picture.anisotropy = 1
-  sharper.anisotropy = 2
-  grazed.anisotropy = 4
-  for (const each of [picture, sharper, grazed]) {
+  grazed.anisotropy = 2
+  for (const each of [picture, grazed]) {
     material.addEventListener('dispose', () => each.dispose())
   }
   // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned. Seen from
@@ -211,7 +209,7 @@ export function groundMaterial(
     })
     return sum
   })().toVar()
-  const clumps = texture(sharper, turnedBy(71)).r.sub(0.5).mul(2).mul(upTo(9000)).toVar()
+  const clumps = noise(71).mul(upTo(9000)).toVar()
   const fine = grain.add(clumps).add(patches).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const rough = broad.mul(0.5).add(patches).toVar()

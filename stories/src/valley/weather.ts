@@ -46,12 +46,12 @@ const deckForm = {
 const fogForm: typeof deckForm = {
   baseAltitude: 595,
   topAltitude: 690,
-  density: 0.015,
+  density: 0.02,
   weatherScale: 0.3,
   shapeScale: 0.25,
   detailAmount: 0,
   edgeSoftness: 0.8,
-  wind: { east: 1, north: 0.3 }
+  wind: { east: 0.4, north: 0.1 }
 }
 
 /** Layers that `WeatherBlend` sets: cumulus, a deck over them or banks of fog, cirrus. */
@@ -67,7 +67,7 @@ export const valleyLayers = [
 ]
 
 /** Most steps to the light, and least depth of a step, in banks of fog: they are soft, and have no bumps that shade each other. */
-const FOG_STEPS = { light: 1, depth: 1 }
+const FOG_STEPS = { light: 1, depth: 1.5 }
 
 /** Likewise in decks that no cumulus stands under. */
 const DECK_STEPS = { light: 2, depth: 0.6 }
