@@ -7,7 +7,7 @@ import {
 import { CloudLayers, CloudLightTable, cloudAirShadow, clouds, cloudWorldMap } from '@welkin/clouds'
 import { FloatType, Matrix4, Vector3 } from 'three'
 import { float, pass } from 'three/tsl'
-import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
+import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { drawToFloat } from '../harness/atmosphere'
 import { worldMap } from '../harness/cloud-scene'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
@@ -264,8 +264,8 @@ gpuTest(
     const lit: number[][] = []
     for (const noise of [0.1, 0.35, 0.6, 0.9]) {
       const found = await evaluateOnGpu(renderer, places, ({ xyz, w }) => {
-        const length = xyz.length() as Node<'float'>
-        const ray = { direction: xyz.div(length) as Node<'vec3'>, jitter: float(noise) }
+        const length = xyz.length()
+        const ray = { direction: xyz.div(length), jitter: float(noise) }
         return set.shafts.litAt(ray, w.mul(length))
       })
       lit.push(places.map((_, i) => found[4 * i]))
