@@ -69,7 +69,7 @@ export const valleyLayers = [
 /** Most steps to the light, and least depth of a step, in banks of fog: they are soft, and have no bumps that shade each other. */
 const FOG_STEPS = { light: 1, depth: 1.5 }
 
-/** Likewise in decks that no cumulus stands under. */
+/** Likewise in decks, and in what is below them. */
 const DECK_STEPS = { light: 2, depth: 0.6 }
 
 /** Rates below cumulus and below the deck over that around the camera, which stands between their cores [–]. */
@@ -123,7 +123,7 @@ export class WeatherBlend {
     quality: CloudQualityName | CloudQuality,
     hasMist: boolean
   ): CloudQualityName | CloudQuality {
-    const isDeck = this.current.cumulus === 0 && this.current.deck > 0
+    const isDeck = this.current.deck > 0
     if (this.#fog(hasMist) <= 0 && !isDeck) return quality
     const steps = isDeck ? DECK_STEPS : FOG_STEPS
     const fine = typeof quality === 'string' ? cloudQualities[quality] : quality
