@@ -22,6 +22,7 @@ import { earthPictures } from './globe/earthPictures'
 import { Explorer } from './moving/Explorer'
 import { Descent } from './shell/Descent'
 import { boardCockpit, coarseGlobe, isAboard, landingGround, toZenith } from './shell/descentPath'
+import { landingMaterial } from './shell/landingMaterial'
 import { changeOf, createRenderer, disposeMeshes, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
@@ -140,7 +141,8 @@ export async function createShell(
     ball.quaternion.copy(toZenith())
     ball.geometry.dispose()
     ball.geometry = coarseGlobe()
-    const ground = new Mesh(landingGround(EARTH_RADIUS), ball.material)
+    const { map } = ball.material as MeshStandardMaterial
+    const ground = new Mesh(landingGround(EARTH_RADIUS), landingMaterial(map!))
     meshes.push(ground)
     scene.add(ground)
   }

@@ -4,7 +4,7 @@ import { BoxGeometry, Mesh, MeshBasicMaterial } from 'three'
 import { pass, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { drawToFloat, expectLight } from '../harness/atmosphere'
-import { coarse, inFog, middle } from '../harness/cloud-view'
+import { coarse, inFog, middle, viewSize } from '../harness/cloud-view'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
@@ -56,6 +56,34 @@ for (const depth of ['standard', 'reversed', 'logarithmic'] as const) {
     { timeoutSeconds: 120, backends: depth === 'logarithmic' ? ['webgpu'] : ['webgpu', 'webgl'] }
   )
 }
+
+gpuTest(
+  'a pole between the rays of a frame keeps the fog before it',
+  t =>
+    inFog(t, async view => {
+      const distance = 100
+      const pixel = (2 * distance * Math.tan(Math.PI / 6)) / viewSize.height
+      // Each pixel has one sample of its own by then.
+      const light: number[] = []
+      for (const width of [1, 2 * viewSize.width]) {
+        view.node.quality = { ...coarse, block: 4 }
+        const black = wall(distance)
+        black.scale.x = (width * pixel) / (2 * distance)
+        black.position.x = pixel / 2
+        view.scene.add(black)
+        light.push(middle(await view.draw(22)))
+        view.scene.remove(black)
+        black.geometry.dispose()
+        black.material.dispose()
+        await view.draw(1)
+      }
+      const [pole, whole] = light
+      t.note(`light before a pole over that before a wall ${(pole / whole).toFixed(3)}`)
+      expectTrue(Math.abs(pole / whole - 1) < 0.1, `a pole has ${pole / whole} of a wall's fog`)
+    }),
+  // History is the same on both.
+  { backends: ['webgpu'] }
+)
 
 gpuTest(
   'transparent things are where their depth is, or else that of what is behind them',

@@ -12,6 +12,7 @@ import { drawToFloat } from '../harness/atmosphere'
 import { worldMap } from '../harness/cloud-scene'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import type { GpuContext } from '../harness/context'
+import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest, takeFineShadows } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
@@ -249,4 +250,38 @@ gpuTest(
     for (const owned of [node, pipeline, scenePass, shafts, table, noise, first]) owned.dispose()
   },
   { timeoutSeconds: 180 }
+)
+
+gpuTest(
+  "has clouds at a shadow's edge in the same light, whatever the noise of their rays",
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const set = stage(renderer, 15)
+    addBox(set.scene, [0, 300, -1500], [600, 600, 50])
+    for (let i = 0; i < 2; i++) await set.draw()
+    // Out of the box's shadow, on both sides of the camera's axis.
+    const places = Array.from({ length: 401 }, (_, i) => [i / 400 - 0.5, 0.02, -1, 900])
+    const lit: number[][] = []
+    for (const noise of [0.1, 0.35, 0.6, 0.9]) {
+      const found = await evaluateOnGpu(renderer, places, ({ xyz, w }) => {
+        const length = xyz.length()
+        const ray = { direction: xyz.div(length), jitter: float(noise) }
+        return set.shafts.litAt(ray, w.mul(length))
+      })
+      lit.push(places.map((_, i) => found[4 * i]))
+    }
+    const apart = Math.max(
+      ...places.map((_, i) => {
+        const parts = lit.map(row => row[i])
+        return Math.max(...parts) - Math.min(...parts)
+      })
+    )
+    const [least, most] = [Math.min(...lit[0]), Math.max(...lit[0])]
+    t.note(`${least.toFixed(2)} to ${most.toFixed(2)} lit, ${apart.toFixed(4)} apart at most`)
+    expectTrue(least < 0.01 && most > 0.99, 'there is no edge')
+    expectTrue(apart < 1e-3, `light is ${apart} apart`)
+    set.dispose()
+  },
+  // Angles are compared alike on both.
+  { backends: ['webgpu'] }
 )

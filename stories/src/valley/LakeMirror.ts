@@ -133,9 +133,9 @@ export class LakeMirror {
         far.mulAssign(growth)
       })
       If(isHit.equal(0), () => {
-        // Where nothing was met, the sky: it is as far as the ray goes.
+        // Where nothing was met, the sky, or what hides it: rims of mountains are at a mean of both depths, which no ray meets.
         hit.assign(vec3(screenPlace(along), along.w))
-        isHit.assign(smoothstep(0.9 * SKY_DEPTH, SKY_DEPTH, depthAt(hit.xy)))
+        isHit.assign(1)
       })
       // Ripples lead a little beyond the picture: there its edges go on.
       const outside = max(hit.xy.sub(0.5).abs().sub(0.5), 0)

@@ -22,7 +22,7 @@ const REACH = 3
 const SAMPLES = 6
 
 /** Pictures for each that occlusion is found for: things keep theirs over a few. */
-const EVERY = 4
+const EVERY = 8
 
 /** Pictures for which it is found on after the camera has come to rest: twice, the second time for what was hidden at the first. */
 const SETTLING = 2 * EVERY
@@ -36,7 +36,7 @@ const HIDDEN = 0.03
 type Vec4 = Node<'vec4'>
 
 /**
- * Ambient occlusion of one of the four pictures before, found from its depth by three's GTAO once it is drawn, and read by the next ones at
+ * Ambient occlusion of one of the eight pictures before, found from its depth by three's GTAO once it is drawn, and read by the next ones at
  * the place where each thing was: nothing is drawn twice.
  */
 export class LastOcclusion {
@@ -82,7 +82,7 @@ export class LastOcclusion {
     this.#still = 0
   }
 
-  /** Keeps the occlusion of every fourth picture once it was drawn, and its camera; of none while camera and things stand still. */
+  /** Keeps the occlusion of every eighth picture once it was drawn, and its camera; of none while camera and things stand still. */
   update(renderer: Renderer, camera: PerspectiveCamera): void {
     const { width, height } = this.#depth.value.image as { width: number; height: number }
     const [columns, rows] = [width, height].map(pixels => Math.ceil(pixels * COARSE))

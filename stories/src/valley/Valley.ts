@@ -2,14 +2,13 @@ import {
   airglow,
   airStyle,
   DayCycle,
-  heightFog,
   milkyWay,
   moon,
   skyEnvironment,
   stars
 } from '@welkin/atmosphere'
 import type { Atmosphere, LightShaftsQuality } from '@welkin/atmosphere'
-import { cloudEnvironment, cloudFogLight, CloudLayers } from '@welkin/clouds'
+import { cloudEnvironment, CloudLayers } from '@welkin/clouds'
 import type { CloudQuality, CloudQualityName } from '@welkin/clouds'
 import { MathUtils, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { RenderPipeline } from 'three/webgpu'
@@ -32,6 +31,7 @@ import { LakeMirror } from './LakeMirror'
 import { Land } from './Land'
 import { MoonShadow } from './MoonShadow'
 import { StreetLamps } from './StreetLamps'
+import { StepClock } from './StepClock'
 import { setLit } from './VertexLitMaterial'
 import { createVillage, doors } from './village'
 import { VIEWS, type ValleyName } from './views'
@@ -74,7 +74,7 @@ const SUNLIGHT = -3
 const TWILIGHT = -20
 
 /** Brighter pictures while snow lies, or it is grey [stops]. */
-const SNOW_COMPENSATION = 0.8
+const SNOW_COMPENSATION = 0.25
 
 /** Brighter pictures of nights, or what the moon lights is black [stops], and elevation of the sun by which they are [degrees]. */
 const NIGHT_COMPENSATION = 1.3
@@ -100,7 +100,6 @@ export class Valley {
   readonly #layers = new CloudLayers(valleyLayers)
   readonly #falling = new ValleyPrecipitation()
   readonly #style = airStyle()
-  readonly #mist = heightFog({ base: ALTITUDE + 3, falloff: 14, density: 0 })
   readonly #moon = moon()
   readonly #glows = [milkyWay(), stars(), airglow()] as const
   readonly #lamps = new StreetLamps(doors())
@@ -127,6 +126,7 @@ export class Valley {
   readonly #finish: ValleyFinish
   readonly #dispose: (() => void)[] = []
   #turbidity = NaN
+  readonly #clock = new StepClock()
 
   constructor(renderer: WebGPURenderer, state: ValleyState) {
     this.#state = { ...state }
@@ -147,8 +147,7 @@ export class Valley {
     this.atmosphere = atmosphere
     const { longitude, latitude } = state
     atmosphere.place({ longitude, latitude, height: ALTITUDE })
-    atmosphere.add(this.#style, this.#mist)
-    const mistLight = cloudFogLight(this.#mist, node) // where there are no shafts
+    atmosphere.add(this.#style)
     scene.add(this.#land, this.#village.object)
 
     this.#node = node
@@ -163,20 +162,13 @@ export class Valley {
     this.#renderer = renderer
     this.pipeline = new RenderPipeline(renderer)
     this.#finish = new ValleyFinish(renderer, this.pipeline, camera, air)
-    this.cycle = new DayCycle(atmosphere, { rate: 1440, autoExposure: exposure })
+    this.cycle = new DayCycle(atmosphere, { autoExposure: exposure })
     this.#setDay(state.hour)
     this.#dispose.push(
       () => this.pipeline.dispose(),
-      ...[
-        this.#finish,
-        exposure,
-        overlay,
-        this.#falling,
-        this.#environment,
-        mistLight,
-        node,
-        shafts
-      ].map(each => () => each.dispose()),
+      ...[this.#finish, exposure, overlay, this.#falling, this.#environment, node, shafts].map(
+        each => () => each.dispose()
+      ),
       () => air.dispose(),
       () => atmosphere.dispose()
     )
@@ -212,10 +204,9 @@ export class Valley {
   set(changes: Partial<ValleyState>, atOnce = false): void {
     const before = { ...this.#state }
     Object.assign(this.#state, changes)
-    const { weather, latitude, longitude, date, hour, dayLength, paused, quality } = this.#state
+    const { weather, latitude, longitude, date, hour, paused, quality } = this.#state
     const { trees, village, water, environment } = this.#state
     this.#weather.set(weather, atOnce)
-    this.cycle.rate = 86_400 / dayLength
     this.cycle.paused = paused
     if (latitude !== before.latitude || longitude !== before.longitude) {
       const { hour } = this.cycle // solar: it stays
@@ -255,12 +246,11 @@ export class Valley {
   }
 
   #applyWeather(atOnce = false): void {
-    const { turbidity, mist } = this.#weather.current
+    const { turbidity } = this.#weather.current
     const { clouds, cloudShadows, precipitation, quality } = this.#state
     this.#node.quality = this.#weather.qualityOf(quality, this.#state.mist)
     this.#falling.set(this.#falls(), atOnce)
     this.#weather.apply(this.#layers, clouds, this.#state.mist, cloudShadows, precipitation)
-    this.#mist.density = this.#state.mist ? mist : 0
     // In steps: the tables are made anew for each.
     const stepped = Math.round(turbidity * 4) / 4
     if (stepped !== this.#turbidity) this.atmosphere.parameters.set({ turbidity: stepped })
@@ -280,6 +270,8 @@ export class Valley {
     this.camera.updateMatrixWorld()
     if (this.#land.update(this.camera)) this.#redrawShadows()
     const exposed = this.atmosphere.luminanceScale
+    const { dayLength, paused } = this.#state
+    this.cycle.rate = this.#clock.rateNow(deltaSeconds, paused ? 0 : 86_400 / dayLength)
     this.cycle.update(deltaSeconds)
     if (!this.#state.autoExposure) this.atmosphere.luminanceScale = exposed // stays as it is
     const { sunDirection, luminanceScale } = this.atmosphere

@@ -14,6 +14,8 @@ import type { Weather } from './weather'
 
 /** Seconds of drying and wetting in one second on the clock. */
 const HASTE = 60
+/** Drops and flakes of a class of size that are drawn, at most: farther off each stands for more. */
+const PARTICLES = { rain: 12_288, snow: 20_480 }
 /** Water of rain, and of snow, that lies where weather was before the scene began [mm]. */
 const FALLEN = { rain: 0.5, snow: 12 }
 
@@ -33,7 +35,10 @@ export class ValleyPrecipitation {
     lights: readonly Light[]
   ): Node {
     const options = { lights, depth, depthCamera: camera, rate: 0, wind: { east: 3, north: 1 } }
-    this.#falling = [rainfall(atmosphere, options), snowfall(atmosphere, options)]
+    this.#falling = [
+      rainfall(atmosphere, { ...options, maxParticles: PARTICLES.rain }),
+      snowfall(atmosphere, { ...options, maxParticles: PARTICLES.snow })
+    ]
     return precipitationOverlay(picture, camera, this.#falling)
   }
 

@@ -60,7 +60,7 @@ const COARSE = 0.25
 const MOVING = 0.7
 
 /** Samples of motion blur where little moves, and where much does: one for two pixels in between. */
-const FEWEST_SAMPLES = 3
+const FEWEST_SAMPLES = 2
 const MOST_SAMPLES = 12
 
 /** Pixels along a side of the pictures that are added up to a larger one (TAAU), over those of that. */

@@ -20,6 +20,7 @@ import {
   vec2,
   vec3
 } from 'three/tsl'
+import type { Texture } from 'three'
 import type { Node } from 'three/webgpu'
 import { createNoiseTexture } from '../globe/detailNoise'
 import { VILLAGE } from './places'
@@ -93,8 +94,9 @@ function roadAt(): Node<'float'> {
   return smoothstep(HALF_ROAD + 0.6, HALF_ROAD - 0.4, x.sub(middle).abs()).mul(isSouth)
 }
 
-/** Distance within which the finest grain of the ground is drawn [m]. */
+/** Distances within which the finest grain of the ground is drawn, and that of tufts [m]. */
 const NEAR = 200
+const MIDDLE = 900
 
 /** Height of grass and stones over the noise that they follow [m], and distance within which they shade themselves [m]. */
 const GRASS = 0.1
@@ -103,6 +105,16 @@ const SHADED = 140
 /** Height of crowns over the noise that they follow [m], and distance within which woods shade themselves [m]. */
 const CROWNS = 5
 const WOODED = 14_000
+
+/** Brightness of crowns' tops over the noise that they follow, and of what is between them. */
+const CANOPY = [-0.4, 0.35] as const
+
+/** Widths over which noise of rock repeats [m]; heights of its cracks over it [m]. Layers of rock are flatter than wide. */
+const CRACKS = [
+  [1240, 20],
+  [173, 4]
+] as const
+const LAYERED = 1.7
 
 /** Width of the edge of a wood, in its share of the ground. */
 const EDGE = 0.16
@@ -119,6 +131,36 @@ function grainNormal(normal: Node<'vec3'>, height: Node<'float'>): Node<'vec3'> 
   return normal.mul(area.abs()).sub(slope).normalize()
 }
 
+/** Ways on the ground from a pixel to its neighbours [m]. */
+interface Footprint {
+  readonly right: Node<'vec3'>
+  readonly down: Node<'vec3'>
+}
+
+/**
+ * Noise of rock, seen from the side: from above, steep slopes would have streaks. Height of cracks [m], and their brightness in [−1, 1].
+ *
+ * @param isEastern - True for walls that face east or west rather than north or south.
+ */
+function cracksIn(
+  picture: Texture,
+  isEastern: Node<'bool'>,
+  { right, down }: Footprint
+): Node<'vec2'> {
+  const flat = (at: Node<'vec3'>): Node<'vec2'> =>
+    vec2(isEastern.select(at.z, at.x), at.y.mul(LAYERED)).toConst()
+  const [place, across, along] = [flat(positionWorld), flat(right), flat(down)]
+  let sum: Node<'vec2'> = vec2(0)
+  for (const [period, deep] of CRACKS) {
+    const [at, ...change] = [place, across, along].map(each => each.div(period))
+    const noise = texture(picture, at).grad(change[0], change[1]).r.sub(0.5).mul(2).toConst()
+    // Cracks are sharp, what is between them is round.
+    const cracked = noise.abs().mul(1.6).min(1).sub(0.4).toConst()
+    sum = sum.add(vec2(cracked.mul(deep), cracked.add(noise.mul(0.5))))
+  }
+  return sum
+}
+
 /** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
 export function groundMaterial(
   { wetnessNode, snowCoverNode }: SurfaceWater,
@@ -131,7 +173,7 @@ export function groundMaterial(
   // Each of its many scales is blurred far away: there are coarser ones. The finest are seen along the ground.
   const grazed = picture.clone()
   picture.anisotropy = 1
-  grazed.anisotropy = 4
+  grazed.anisotropy = 2
   for (const each of [picture, grazed]) {
     material.addEventListener('dispose', () => each.dispose())
   }
@@ -151,16 +193,23 @@ export function groundMaterial(
   const near = turnedBy(1.9).toVar()
   const [across, along] = [dFdx(near).toVar(), dFdy(near).toVar()]
   // Its cells are seen near by: bent, they are no squares.
-  const bent = turnedBy(11.3).add(sin(turnedBy(0.9).yx).mul(0.05))
+  const bent = turnedBy(11.3)
+    .add(sin(turnedBy(0.9).yx).mul(0.05))
+    .toVar()
+  const [bentAcross, bentAlong] = [dFdx(bent).toVar(), dFdy(bent).toVar()]
   const grain = Fn(() => {
-    const sum = noiseAt(bent).mul(0.6).mul(upTo(900)).toVar()
+    const sum = float(0).toVar()
+    If(distance.lessThan(MIDDLE), () => {
+      const tufts = texture(picture, bent).grad(bentAcross, bentAlong).r.sub(0.5).mul(1.2)
+      sum.assign(tufts.mul(upTo(MIDDLE)))
+    })
     If(distance.lessThan(NEAR), () => {
       const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(1.6)
       sum.addAssign(finest.mul(upTo(NEAR)))
     })
     return sum
   })().toVar()
-  const clumps = noise(71).mul(upTo(2500)).toVar()
+  const clumps = noise(71).mul(upTo(9000)).toVar()
   const fine = grain.add(clumps).add(patches).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const rough = broad.mul(0.5).add(patches).toVar()
@@ -173,14 +222,27 @@ export function groundMaterial(
   const wooded = cover.x.add(uneven.mul(smoothstep(0, 0.25, cover.x)))
   const forest = smoothstep(0.42 - EDGE, 0.42 + EDGE, wooded).toVar()
   const rocky = smoothstep(0.27, 0.42, slope).toVar()
-  const crowns = clumps.mul(0.6).add(patches).mul(CROWNS).mul(forest)
+  const footprint = { right: dFdx(positionWorld).toVar(), down: dFdy(positionWorld).toVar() }
+  const cracks = Fn(() => {
+    const found = vec2(0).toVar()
+    If(rocky.greaterThan(0), () => {
+      // Where walls turn, noise parts one from the other.
+      const isEastern = broadNormal.x.abs().sub(broadNormal.z.abs()).greaterThan(fine.mul(0.25))
+      found.assign(cracksIn(grazed, isEastern, footprint).mul(rocky))
+    })
+    return found
+  })().toVar()
+  const crowns = clumps.mul(1.3).add(patches).mul(CROWNS).mul(forest)
   // Seen along the ground, differences between pixels are those of noise.
   const facing = smoothstep(
     0.1,
     0.45,
     broadNormal.dot(cameraPosition.sub(positionWorld).normalize())
   )
-  const relieved = crowns.mul(upTo(WOODED).mul(facing)).add(grain.mul(GRASS).mul(upTo(SHADED)))
+  const relieved = crowns
+    .mul(upTo(WOODED).mul(facing))
+    .add(grain.mul(GRASS).mul(upTo(SHADED)))
+    .add(cracks.x)
   const normal = grainNormal(broadNormal, relieved).toVar()
   material.normalNode = transformNormalToView(normal)
   const dry = broad.mul(0.6).add(fine.mul(0.45)).add(0.45).clamp()
@@ -193,8 +255,10 @@ export function groundMaterial(
     })
     return ground
   })()
-  const trees = mix(vec3(0.01, 0.019, 0.008), vec3(0.036, 0.052, 0.019), fine.add(0.45).clamp())
-  const rock = mix(vec3(0.13, 0.125, 0.115), vec3(0.25, 0.235, 0.21), fine.mul(0.7).add(0.5))
+  const canopy = smoothstep(...CANOPY, clumps.add(patches.mul(0.4)))
+  const trees = mix(vec3(0.006, 0.012, 0.006), vec3(0.04, 0.056, 0.02), canopy)
+  const weathered = fine.mul(0.35).add(cracks.y.mul(0.55)).add(0.5).clamp()
+  const rock = mix(vec3(0.105, 0.1, 0.094), vec3(0.29, 0.274, 0.247), weathered)
   const alpine = mix(
     vec3(0.095, 0.1, 0.045),
     rock,
@@ -203,7 +267,7 @@ export function groundMaterial(
   // Tufts stand in the light, gaps between them are dark.
   const tuft = smoothstep(-0.4, 0.45, grain)
     .sub(0.5)
-    .mul(upTo(900).mul(clumps.mul(0.9).add(0.65).clamp(0.15, 1.2)))
+    .mul(upTo(MIDDLE).mul(clumps.mul(0.9).add(0.65).clamp(0.15, 1.2)))
     .toVar()
   const hue = mix(vec3(0.93, 1.02, 0.86), vec3(1.08, 0.99, 1.06), tuft.add(0.5))
   const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.42)))
@@ -218,7 +282,9 @@ export function groundMaterial(
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
   // Of woods one sees the trunks and the undersides of branches, too.
   const dark = forest.mul(fine.mul(0.25).add(WOODS)).clamp()
-  const whitened = snow.mul(smoothstep(0.46, 0.3, slope)).mul(dark.oneMinus())
+  // It lies in cracks, and is blown off what is between them.
+  const steep = slope.add(cracks.y.mul(0.06))
+  const whitened = snow.mul(smoothstep(0.46, 0.3, steep)).mul(dark.oneMinus())
   color = mix(color, white, whitened)
   material.colorNode = color
   material.emissiveNode = lamplight

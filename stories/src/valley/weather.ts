@@ -9,7 +9,7 @@ export interface Weather {
   readonly cirrus: number
   /** Aerosol of the air over that of clear air. */
   readonly turbidity: number
-  /** Extinction of the even part of the mist over the lake [1/m]; banks of fog come with it. */
+  /** Share of the mist, in [0, 1]: banks of fog over the lake. */
   readonly mist: number
   /** Rates of rain from cumulus, and of snow from the deck, as water [mm/h]. */
   readonly rain: number
@@ -21,11 +21,11 @@ const dry = { rain: 0, snow: 0 }
 export const weathers = {
   fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...dry },
   clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...dry },
-  broken: { cumulus: 0.4, deck: 0.55, cirrus: 0.2, turbidity: 2.5, mist: 0, ...dry },
-  mist: { cumulus: 0, deck: 0, cirrus: 0.25, turbidity: 3, mist: 0.008, ...dry },
+  broken: { cumulus: 0.4, deck: 0.55, cirrus: 0, turbidity: 2.5, mist: 0, ...dry },
+  mist: { cumulus: 0, deck: 0, cirrus: 0, turbidity: 3, mist: 1, ...dry },
   overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...dry },
-  shower: { cumulus: 0.35, deck: 0.45, cirrus: 0.1, turbidity: 2.25, mist: 0, rain: 6, snow: 0 },
-  snow: { cumulus: 0.1, deck: 0.95, cirrus: 0, turbidity: 3, mist: 0, rain: 0, snow: 1.5 }
+  shower: { cumulus: 0, deck: 0.75, cirrus: 0, turbidity: 2.25, mist: 0, rain: 6, snow: 0 },
+  snow: { cumulus: 0, deck: 0.95, cirrus: 0, turbidity: 3, mist: 0, rain: 0, snow: 1.5 }
 } satisfies Record<string, Weather>
 
 export type WeatherName = keyof typeof weathers
@@ -34,6 +34,7 @@ export type WeatherName = keyof typeof weathers
 const deckForm = {
   baseAltitude: 2700,
   topAltitude: 3400,
+  density: 0.04,
   weatherScale: 1,
   shapeScale: 1,
   detailAmount: 1,
@@ -45,11 +46,12 @@ const deckForm = {
 const fogForm: typeof deckForm = {
   baseAltitude: 595,
   topAltitude: 690,
-  weatherScale: 0.12,
+  density: 0.02,
+  weatherScale: 0.3,
   shapeScale: 0.25,
   detailAmount: 0,
   edgeSoftness: 0.8,
-  wind: { east: 1, north: 0.3 }
+  wind: { east: 0.4, north: 0.1 }
 }
 
 /** Layers that `WeatherBlend` sets: cumulus, a deck over them or banks of fog, cirrus. */
@@ -58,18 +60,17 @@ export const valleyLayers = [
   {
     ...deckForm,
     coverage: 0,
-    density: 0.04,
     profileExponent: 1.2,
     weatherWeights: [0, 1, 0, 0] as [number, number, number, number]
   },
   { ...cloudPreset('cirrus').at(0).parameters, coverage: 0, wind: { east: 26, north: -8 } }
 ]
 
-/** Share of the valley that banks of fog cover in the mist. */
-const FOGGY = 0.9
-
 /** Most steps to the light, and least depth of a step, in banks of fog: they are soft, and have no bumps that shade each other. */
-const FOG_STEPS = { light: 2, depth: 0.6 }
+const FOG_STEPS = { light: 1, depth: 1.5 }
+
+/** Likewise in decks, and in what is below them. */
+const DECK_STEPS = { light: 2, depth: 0.6 }
 
 /** Rates below cumulus and below the deck over that around the camera, which stands between their cores [–]. */
 const SHAFTS = [4, 2] as const
@@ -114,7 +115,7 @@ export class WeatherBlend {
   /** Share of the banks of fog, in [0, 1]; 0 or less where there are none, or a deck in their place. */
   #fog(hasMist: boolean): number {
     const { mist, deck } = this.current
-    return (hasMist ? mist / weathers.mist.mist : 0) - deck
+    return (hasMist ? mist : 0) - deck
   }
 
   /** Fineness of clouds in this weather, over that of others. */
@@ -122,10 +123,12 @@ export class WeatherBlend {
     quality: CloudQualityName | CloudQuality,
     hasMist: boolean
   ): CloudQualityName | CloudQuality {
-    if (this.#fog(hasMist) <= 0) return quality
+    const isDeck = this.current.deck > 0
+    if (this.#fog(hasMist) <= 0 && !isDeck) return quality
+    const steps = isDeck ? DECK_STEPS : FOG_STEPS
     const fine = typeof quality === 'string' ? cloudQualities[quality] : quality
-    const lightSteps = Math.min(fine.lightSteps, FOG_STEPS.light)
-    return { ...fine, lightSteps, depthStep: Math.max(fine.depthStep, FOG_STEPS.depth) }
+    const lightSteps = Math.min(fine.lightSteps, steps.light)
+    return { ...fine, lightSteps, depthStep: Math.max(fine.depthStep, steps.depth) }
   }
 
   /**
@@ -146,7 +149,7 @@ export class WeatherBlend {
     // The deck and banks of fog are one layer: one goes before the other comes.
     const foggy = this.#fog(hasMist)
     layers.at(1).set(foggy > 0 ? fogForm : deckForm)
-    const covers = [cumulus, foggy > 0 ? foggy * FOGGY : -foggy, cirrus]
+    const covers = [cumulus, Math.abs(foggy), cirrus]
     const freezingLevel = snow > 0 ? 0 : FREEZING
     for (const [i, coverage] of covers.entries()) {
       const rate = hasClouds && falls ? rates[i] : 0

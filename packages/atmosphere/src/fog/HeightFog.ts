@@ -12,6 +12,7 @@ import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
 import type { Air } from '../scattering/tsl/ray'
 import { FogLightTable } from './FogLightTable'
 import type { FogOvercast } from './FogOvercast'
+import type { ViewUniforms } from '../view/ViewUniforms'
 import { checked, DEFAULTS, type HeightFogOptions } from './HeightFogOptions'
 import { fogLight, scatteredByFog, type FogLight } from './tsl/fogLight'
 import { fogDepth } from './tsl/heightFog'
@@ -169,12 +170,8 @@ export class HeightFog implements SkyLayer {
       const fog = this.#along(ray)
       // The light of the air in front of that point stays; fog dims the rest.
       const front = air.radiance.mul(partAhead(ray, fog.segment, air.depth)).toConst()
-      // Materials have no texture to spare, and droplets take one for themselves.
       const lightOf = (index: number, from: LightSource, cosLight: Float, seen: LayerRay): Vec4 => {
-        const light =
-          view.camera === null || this.droplets !== null
-            ? this.#lightAt(view.air, from, fog.middle, cosLight)
-            : this.#tableOf(source, view.air).light(view.camera, index, fog.middle)
+        const light = this.#lightIn(view, index, from, fog.middle, cosLight)
         const { once, often } = this.#scattered(light, seen, cosLight)
         return once.add(often)
       }
@@ -203,7 +200,10 @@ export class HeightFog implements SkyLayer {
     const [once, often] = [vec4(0).toVar(), vec4(0).toVar()]
     If(fog.through.lessThan(1), () => {
       const { cosLight } = viewpoint
-      const light = this.#lightAt(ray.view.air, source, fog.middle, cosLight)
+      // Tables are drawn for the sun's view.
+      const light = isSun
+        ? this.#lightIn(ray.view, 0, source, fog.middle, cosLight)
+        : this.#lightAt(ray.view.air, source, fog.middle, cosLight)
       const scattered = this.#scattered(light, ray, cosLight)
       once.assign(scattered.once.mul(fog.seen))
       often.assign(scattered.often.mul(fog.seen))
@@ -256,6 +256,19 @@ export class HeightFog implements SkyLayer {
       /** Distance to an optical depth of the fog [m]. */
       depthAt: (visible: Float): Float => distanceTo(inFogAt(visible))
     }
+  }
+
+  /** Light of a source at an altitude: from the table, but that materials have no texture to spare, and droplets take one for themselves. */
+  #lightIn(
+    { camera, source, air }: ViewUniforms,
+    index: number,
+    from: LightSource,
+    middle: Float,
+    cosLight: Float
+  ): FogLight {
+    return camera === null || this.droplets !== null
+      ? this.#lightAt(air, from, middle, cosLight)
+      : this.#tableOf(source, air).light(camera, index, middle)
   }
 
   /**

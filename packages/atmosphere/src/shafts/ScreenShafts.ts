@@ -18,6 +18,7 @@ import { spacingIn } from './quality'
 import { LostLightGrid, type LostLight } from './LostLightGrid'
 import { shadowAt, type ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf, FAR } from './tsl/without'
+import { ditheredDark } from './tsl/polarMap'
 import { screenRay } from '../view/tsl/screenRay'
 import { DepthRays } from '../view/DepthRays'
 
@@ -180,7 +181,7 @@ export class ScreenShafts implements ScreenShadows {
         const offset = mix(start, end, part).toConst() as Vec3
         const distance = offset.length().max(1e-3).toConst() as Float
         const ray = { direction: offset.div(distance).toConst() as Vec3, jitter }
-        const { dark, missing } = shadowAt(view, shadowedAir, ray, distance)
+        const { dark, missing } = shadowAt(view, shadowedAir, ray, distance, ditheredDark)
         direct.subAssign(dark.mul(share))
         if (missing !== null) diffuse.subAssign(missing.mul(share))
       })

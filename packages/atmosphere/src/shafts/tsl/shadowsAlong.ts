@@ -4,7 +4,7 @@ import type { Bool, Float, Vec3, Vec4 } from '../../tsl-types'
 import type { ShadowedMedium } from '../../view/SkyLayer'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 import type { AirPoint, AirShadow, AirViewRay } from '../AirOccluder'
-import { darkPart, ditheredDark, polarRay, type PolarFrame, type PolarRay } from './polarMap'
+import { darkPart, polarRay, type ditheredDark, type PolarFrame, type PolarRay } from './polarMap'
 
 /** A view ray through media. */
 export type MediaRay = Omit<ShaftRay, 'seenFrom'> & { readonly view: ViewUniforms }
@@ -101,7 +101,8 @@ export function shadowAt(
   view: ViewUniforms,
   shadowedAir: ShadowedAir,
   ray: Omit<AirViewRay, 'view'>,
-  distance: Float
+  distance: Float,
+  readMap?: typeof ditheredDark
 ): { dark: Float; missing: Vec4 | null } {
   const { frame, maximumRho } = shadowedAir
   const { direction, jitter } = ray
@@ -110,8 +111,8 @@ export function shadowAt(
   const isMapped = distance.mul(sinViewLight).lessThan(maximumRho) as Bool
   // Many places are beyond the map.
   const polar = (): PolarRay => polarRay(frame, direction, cosViewLight)
-  const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, ray, polar, jitter, ditheredDark)
-  return { dark: darkAt(distance, isMapped), missing: missingAt?.(distance) ?? null }
+  const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, ray, polar, jitter, readMap)
+  return { dark: darkAt(distance, isMapped), missing: missingAt && missingAt(distance) }
 }
 
 /** Part of the light that arrives at a place on a ray: see `ShadowedShafts.litAt`. */

@@ -25,6 +25,9 @@ const LEAST_WEIGHT = 1 / SAMPLE_STEPS
 /** Square of a distance beyond any corner [marched pixels²]. */
 const NO_CORNER = 100
 
+/** Standard deviations where no corner passes: nothing is known, and history stays. */
+const UNKNOWN = 100
+
 /** Estimate of a pixel from this frame's marched pixels alone. */
 export interface Estimate extends Neighbourhood {
   readonly light: Vec4
@@ -112,13 +115,14 @@ function gatherCorners(
     nearest.assign(nearest.min(passes.greaterThan(0).select(square.x.add(square.y), NO_CORNER)))
   })
   const count = sums.y.max(1)
-  // Nothing was marched as far as this pixel sees: what is in front of clouds sees none.
-  If(sums.y.greaterThan(0), () => {
-    mean.assign(total.div(count))
-  })
   const average = moments.div(count).toConst() as Vec4
   const variance = average.zw.sub(average.xy.mul(average.xy)).max(0)
-  statistics.assign(vec4(brightness(mean), mean.w, variance.sqrt()))
+  statistics.assign(vec4(0, 1, UNKNOWN, UNKNOWN))
+  // Or else nothing was marched as far as this pixel sees: what is in front of clouds sees none.
+  If(sums.y.greaterThan(0), () => {
+    mean.assign(total.div(count))
+    statistics.assign(vec4(brightness(mean), mean.w, variance.sqrt()))
+  })
   light.assign(sums.x.greaterThan(1e-6).select(light.div(sums.x.max(1e-7)), mean))
   distance.assign(sums.w.greaterThan(0).select(sums.z.div(sums.w.max(1e-9)), end))
 }
