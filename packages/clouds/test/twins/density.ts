@@ -204,6 +204,12 @@ export function weatherAt(
     shifted(placeIn(inLayer, latticeRotations.fields, fieldPeriod), region, weatherShifts.regions),
     fieldLevel
   )
+  const fieldsKept =
+    1 -
+    smoothstep(
+      ...strengthForm.repeatLevels,
+      fieldLevel - strengthForm.repeatCoarseness * layerForms(layer).coarseness
+    )
   const [shiftX, shiftY] = [0, 1].map(
     axis => (weatherShifts.fields * fields[axis] + weatherShifts.regions * region[axis]) * period
   )
@@ -226,8 +232,7 @@ export function weatherAt(
   )
 
   const background =
-    scaleWeights.fields * dot(fields) +
-    scales.cells * fields[2] +
+    fieldsKept * (scaleWeights.fields * dot(fields) + scales.cells * fields[2]) +
     mesoscaleFactor * (mesoscale[0] + scaleWeights.bands * mesoscale[3]) +
     scales.regions *
       (region[2] + scaleWeights.regionCells * region[0] + scaleWeights.regionBands * region[3]) +
@@ -250,7 +255,7 @@ export function weatherAt(
   const blurred = background + single
   const lost =
     scales.cloudVariance * lostShare(level - coarseness) +
-    scales.fieldVariance * lostShare(fieldLevel - 0.5) +
+    scales.fieldVariance * (1 - fieldsKept ** 2 * (1 - lostShare(fieldLevel - 0.5))) +
     (mesoscaleFactor ** 2 * (1 + scaleWeights.bands ** 2) * lostShare(mesoscaleLevel - 0.8)) / 12 +
     (scales.regions ** 2 * REGION_SIZE ** 2 * lostShare(regionLevel - 0.8)) / 12
   const variance = level > 0 ? lost : 0

@@ -36,6 +36,12 @@ export const weatherLevel = (footprint: Float, perPeriod: Float | number): Float
  */
 const UNRESOLVED_LEVELS = [0.5, 4.5] as const
 
+/** Factor of fields at a level of detail: what is left of them repeats, but for storms', which are too large [–]. */
+export const fieldsKept = ({ coarseness }: LayerNodes, level: Float): Float =>
+  smoothstep(...strengthForm.repeatLevels, level.sub(coarseness.mul(strengthForm.repeatCoarseness)))
+    .oneMinus()
+    .toConst()
+
 /** Share of a noise's variance that its levels of detail have lost. */
 const lostShare = (level: Float): Float => smoothstep(0, strengthForm.fadeLevels, level)
 
@@ -51,11 +57,14 @@ function lostVariance(layer: LayerNodes, footprint: Float, level: Float, cloudLe
     .add(regionVariance)
     .oneMinus()
   const fieldLevel = level.sub(strengthForm.levelsPerOctave * Math.log2(noisePeriods.fields)).max(0)
+  const kept = fieldsKept(layer, fieldLevel)
   const mesoscaleLevel = weatherLevel(footprint, 1 / noisePeriods.mesoscale)
   const regionLevel = weatherLevel(footprint, 1 / noisePeriods.regions)
   return layer.cloudVariance
     .mul(lostShare(cloudLevel))
-    .add(fieldVariance.mul(lostShare(fieldLevel.sub(0.5))))
+    .add(
+      fieldVariance.mul(lostShare(fieldLevel.sub(0.5)).oneMinus().mul(kept.mul(kept)).oneMinus())
+    )
     .add(mesoscaleVariance.mul(lostShare(mesoscaleLevel.sub(0.8))))
     .add(regionVariance.mul(lostShare(regionLevel.sub(0.8))))
 }
