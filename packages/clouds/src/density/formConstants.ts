@@ -35,13 +35,6 @@ export const strengthForm = {
    */
   fadeLevels: 6,
   /**
-   * Levels of detail over which fields fade out: their noise is seen to repeat where many of its periods are in sight [octaves]. Greater:
-   * the same field in rows, from orbit (*World clouds*, without its map).
-   */
-  repeatLevels: [0, 2],
-  /** Levels of detail by which those of storms are later, per level of their coarseness. 0: storms from 4,000 km are too bright. */
-  repeatCoarseness: 8,
-  /**
    * Levels of detail of the weather's noise for each octave by which a footprint is wider than its texels. 1: grain of a pixel or two
    * from orbit; greater: the weather blurs with the distance (*World clouds*, without its map).
    */

@@ -29,6 +29,7 @@ import { isStorm, stormRadius } from '../../src/layers/storms'
 import { windAxis } from '../../src/layers/wind'
 import { ENCODING_SCALE } from '../../src/noise/noiseRecipes'
 import { NOISE_SIZE } from '../../src/noise/noiseSizes'
+import { FADE_COARSENESS, FIELDS_FADE } from '../../src/density/tsl/resolution'
 import type { Vec3Array } from './noise'
 import type { NoiseTextures } from './noiseTextures'
 import { frayedDistance, stormAround, stormStrength, type StormThere } from './storm'
@@ -204,12 +205,11 @@ export function weatherAt(
     shifted(placeIn(inLayer, latticeRotations.fields, fieldPeriod), region, weatherShifts.regions),
     fieldLevel
   )
-  const fieldsKept =
-    1 -
-    smoothstep(
-      ...strengthForm.repeatLevels,
-      fieldLevel - strengthForm.repeatCoarseness * layerForms(layer).coarseness
-    )
+  const fieldsKept = smoothstep(
+    -FIELDS_FADE,
+    0,
+    FADE_COARSENESS * layerForms(layer).coarseness - fieldLevel
+  )
   const [shiftX, shiftY] = [0, 1].map(
     axis => (weatherShifts.fields * fields[axis] + weatherShifts.regions * region[axis]) * period
   )

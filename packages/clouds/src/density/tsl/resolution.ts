@@ -36,11 +36,18 @@ export const weatherLevel = (footprint: Float, perPeriod: Float | number): Float
  */
 const UNRESOLVED_LEVELS = [0.5, 4.5] as const
 
-/** Factor of fields at a level of detail: what is left of them repeats, but for storms', which are too large [–]. */
+/**
+ * Levels of detail over which fields fade out: their noise is seen to repeat where many of its periods are in sight [octaves]. Greater:
+ * the same field in rows, from orbit (*World clouds*, without its map).
+ */
+export const FIELDS_FADE = 2
+
+/** Levels of detail by which those of storms, which are large, fade later, per level of their coarseness. 0: too bright from 4,000 km. */
+export const FADE_COARSENESS = 8
+
+/** Factor of fields at a level of detail [–]. */
 export const fieldsKept = ({ coarseness }: LayerNodes, level: Float): Float =>
-  smoothstep(...strengthForm.repeatLevels, level.sub(coarseness.mul(strengthForm.repeatCoarseness)))
-    .oneMinus()
-    .toConst()
+  smoothstep(-FIELDS_FADE, 0, coarseness.mul(FADE_COARSENESS).sub(level)).toConst()
 
 /** Share of a noise's variance that its levels of detail have lost. */
 const lostShare = (level: Float): Float => smoothstep(0, strengthForm.fadeLevels, level)

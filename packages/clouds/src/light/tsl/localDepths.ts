@@ -71,10 +71,11 @@ export function localDepths(
   { sample, weather, layers: { base, top, layered } }: ShadedSample,
   { direction: toLight, isMapped, cosine: cosLight }: ShadingLight
 ): LocalDepths {
-  const rise = top.sub(sample.altitude).max(1).toConst()
-  const fall = sample.altitude.sub(base).max(1).toConst()
-  const [above, below] = [rise, fall].map(
-    length => mix(length.min(MOST_REACH), length, layered).toConst() as Float
+  const [rise, fall] = [top.sub(sample.altitude), sample.altitude.sub(base)].map(length =>
+    length.max(1).toConst()
+  )
+  const [above, below] = [rise, fall].map(length =>
+    mix(length.min(MOST_REACH), length, layered).toConst()
   )
   const slant = cosLight.abs().max(LOWEST_COSINE).reciprocal().toConst()
   const toTop = cosLight.greaterThan(0).select(rise, fall).mul(slant).toConst() as Float
