@@ -82,8 +82,8 @@ export const scaleWeights = {
   regions: 0.4,
   /** Fronts and belts: density/systemsForm.ts. */
   planet: 0.75,
-  /** Factor of the last one in storms. 1: storms of one size all over the planet (*World clouds*, without its map). */
-  storms: 2,
+  /** Part by which the last one is more in storms. 0: storms of one size all over the planet (*World clouds*, without its map). */
+  storms: 1,
   /** Share of finer cells in the regions. 0: their edges have no finer structure. */
   regionCells: 0.6,
   /** Share of bands in the mesoscale and in the regions. 0: round clusters alone, no fronts. */
@@ -164,7 +164,7 @@ export function weatherScales(
     2 * scaleWeights.fields * scaleWeights.cells * (unit[2] ?? 0)
   const { mesoscale, regions, planet, storms } = scaleWeights
   const large = hasMap ? 0 : 1
-  const systems = planet * (1 + (storms - 1) * (unit[2] ?? 0) ** 2)
+  const systems = planet * (1 + storms * (unit[2] ?? 0) ** 2)
   const variance = 1 + fieldVariance + large * (mesoscale ** 2 + regions ** 2 + systems ** 2)
   const factor = Math.sqrt(12 / variance)
   const [a, b, c, d] = unit.map(weight => weight * factor)

@@ -72,7 +72,6 @@ const cirrus: Partial<CloudLayerParameters> = {
   coverage: 0.5,
   density: 0.003,
   profileExponent: 1,
-  shapeAmount: 1,
   detailAmount: 0.5,
   edgeSoftness: 0.8,
   weatherScale: 0.5,
