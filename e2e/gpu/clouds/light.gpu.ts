@@ -1,5 +1,19 @@
-import { CloudLightTable, DropletLightTable } from '@welkin/clouds'
-import { float, vec4 } from 'three/tsl'
+import { Atmosphere } from '@welkin/atmosphere'
+import { CloudField, CloudLayers, CloudLightTable, DropletLightTable } from '@welkin/clouds'
+import { DataTexture, PerspectiveCamera } from 'three'
+import { float, step, texture, vec4 } from 'three/tsl'
+import type { Node, NodeFrame } from 'three/webgpu'
+import { weatherCacheAt } from '../../../packages/clouds/src/density/tsl/sampler'
+import { lightAt } from '../../../packages/clouds/src/light/tsl/lighting'
+import { localDepths } from '../../../packages/clouds/src/light/tsl/localDepths'
+import type {
+  ShadedSample,
+  ShadingContext
+} from '../../../packages/clouds/src/light/tsl/shadingContext'
+import { QualityUniforms } from '../../../packages/clouds/src/march/quality'
+import { layersAt } from '../../../packages/clouds/src/march/tsl/layerBoundaries'
+import type { CloudShadows } from '../../../packages/clouds/src/shadow/tsl/sampleShadows'
+import { number } from '../../../packages/clouds/src/uniforms'
 import * as twin from '../../../packages/clouds/test/twins/cloudLight'
 import { solveCloudLight } from '../../../packages/clouds/test/twins/cloudLightTable'
 import { aureolePhase, cloudPhase } from '../../../packages/clouds/test/twins/cloudPhase'
@@ -212,4 +226,49 @@ gpuTest('scales the light of sky and ground on clouds by their `ambient`, and no
     expectTrue(none > 0.1 * once && none < 0.99 * once, `without ${none} of ${once}`)
     expectClose(twice - once, once - none, { relative: 0.05 }, 'twice the light')
   })
+)
+
+gpuTest(
+  'sees the lid of a place in a tall cloud, however far its layer’s top is; decks count whole',
+  async t => {
+    const renderer = await t.createRenderer()
+    const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45 })
+    const layers = new CloudLayers([{ baseAltitude: 1000, topAltitude: 11_000 }])
+    const lid = (altitude: Node<'float'>, from: number, to: number): Node<'float'> =>
+      step(from, altitude).mul(step(altitude, float(to)))
+    const field = new CloudField(atmosphere, layers, undefined, {
+      // Two shelves of cloud; a lid over the lower one.
+      extinction: ({ altitude }) =>
+        lid(altitude, 1500, 1600)
+          .add(lid(altitude, 1700, 1900))
+          .add(lid(altitude, 5000, 5100))
+          .mul(0.05)
+    })
+    const camera = new PerspectiveCamera()
+    const view = atmosphere.update(renderer, camera)
+    field.view.update({ renderer, camera } as unknown as NodeFrame)
+    field.update(view, 0)
+    const map = texture(new DataTexture(new Uint8Array(4), 1, 1))
+    const shadows = { map, cascades: [], count: 1, isMoonlit: number() } as unknown as CloudShadows
+    const context = { field, shadows, quality: new QualityUniforms() } as unknown as ShadingContext
+    const inputs = [1550, 5050].flatMap(altitude => [0, 1].map(layered => [altitude, layered]))
+    const results = await evaluateOnGpu(renderer, inputs, ({ x: altitude, y: layered }) => {
+      const { up } = field.view
+      const offset = up.mul(altitude.sub(field.view.height)).toConst() as Node<'vec3'>
+      const sample = { offset, ...field.view.localCoordinates(offset), distance: float(1000) }
+      const weather = weatherCacheAt(field, sample, layersAt(field, sample.altitude).range)
+      const around = { base: float(1000), top: float(11_000), layered }
+      const shaded = { sample, weather, layers: around } as unknown as ShadedSample
+      const source = lightAt(context, sample)
+      return localDepths(context, shaded, source).above
+    })
+    const [under, deck, open, deckAbove] = [0, 1, 2, 3].map(i => results[4 * i])
+    t.note([under, deck, open, deckAbove].map(x => x.toFixed(1)).join(', '))
+    expectTrue(under > 3 * open, `${under} under the lid, ${open} without one`)
+    // A deck is looked at far above, where both are clear.
+    expectClose(deck / deckAbove, (11_000 - 1550) / (11_000 - 5050), { relative: 1e-3 }, 'in decks')
+    field.dispose()
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
 )

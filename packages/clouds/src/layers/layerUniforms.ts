@@ -82,6 +82,8 @@ export const scaleWeights = {
   regions: 0.4,
   /** Fronts and belts: density/systemsForm.ts. */
   planet: 0.75,
+  /** Part by which the last one is more in storms. 0: storms of one size all over the planet (*World clouds*, without its map). */
+  storms: 1,
   /** Share of finer cells in the regions. 0: their edges have no finer structure. */
   regionCells: 0.6,
   /** Share of bands in the mesoscale and in the regions. 0: round clusters alone, no fronts. */
@@ -160,9 +162,10 @@ export function weatherScales(
     scaleWeights.fields ** 2 +
     scaleWeights.cells ** 2 +
     2 * scaleWeights.fields * scaleWeights.cells * (unit[2] ?? 0)
+  const { mesoscale, regions, planet, storms } = scaleWeights
   const large = hasMap ? 0 : 1
-  const { mesoscale, regions, planet } = scaleWeights
-  const variance = 1 + fieldVariance + large * (mesoscale ** 2 + regions ** 2 + planet ** 2)
+  const systems = planet * (1 + storms * (unit[2] ?? 0) ** 2)
+  const variance = 1 + fieldVariance + large * (mesoscale ** 2 + regions ** 2 + systems ** 2)
   const factor = Math.sqrt(12 / variance)
   const [a, b, c, d] = unit.map(weight => weight * factor)
   // From closed cells to open ones by way of cumulus: the variance stays.
@@ -172,7 +175,7 @@ export function weatherScales(
     fields: scaleWeights.fields,
     cells: scaleWeights.cells * factor,
     regions: (large * regions * factor) / REGION_SIZE,
-    planet: (large * planet) / Math.sqrt(variance),
+    planet: (large * systems) / Math.sqrt(variance),
     cloudVariance: 1 / variance,
     fieldVariance: fieldVariance / variance
   }

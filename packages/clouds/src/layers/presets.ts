@@ -29,8 +29,8 @@ const congestus: Partial<CloudLayerParameters> = {
   topAltitude: 4300,
   profileExponent: 1,
   coverage: 0.25,
-  weatherScale: 0.6,
-  shapeScale: 0.6,
+  weatherScale: 1.2,
+  shapeScale: 0.8,
   turbulence: 0.5,
   wind: { east: 9, north: 3 }
 }
@@ -72,9 +72,9 @@ const cirrus: Partial<CloudLayerParameters> = {
   coverage: 0.5,
   density: 0.003,
   profileExponent: 1,
-  shapeAmount: 0.75,
   detailAmount: 0.5,
-  edgeSoftness: 1,
+  edgeSoftness: 0.8,
+  weatherScale: 0.5,
   turbulence: 1.5,
   shear: 2,
   densityGrowth: 0,
@@ -134,7 +134,14 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     cumulus
   ],
   nimbostratus: [{ ...overcast, topAltitude: 3500, precipitation: { rate: 3, share: 0.9 } }],
-  snowShower: [{ ...congestus, precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 } }],
+  snowShower: [
+    {
+      ...congestus,
+      weatherScale: 0.6,
+      shapeScale: 0.6,
+      precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 }
+    }
+  ],
   hailstorm: [
     { ...storm, precipitation: { rate: 30, share: 0.4, freezingLevel: 3000, hail: 0.4 } },
     smallCumulus

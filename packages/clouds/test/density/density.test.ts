@@ -74,14 +74,15 @@ describe('cloudExtinction', () => {
     )
   })
 
+  const count = 600
+  /** A spiral of even density. */
+  const directions = Array.from({ length: count }, (_, i) => {
+    const z = (2 * i + 1) / count - 1
+    const [across, angle] = [Math.sqrt(1 - z * z), 2.399963 * i]
+    return new Vector3(across * Math.cos(angle), across * Math.sin(angle), z)
+  })
+
   it('covers what is asked for, all over the planet', () => {
-    const count = 600
-    // A spiral of even density.
-    const directions = Array.from({ length: count }, (_, i) => {
-      const z = (2 * i + 1) / count - 1
-      const [across, angle] = [Math.sqrt(1 - z * z), 2.399963 * i]
-      return new Vector3(across * Math.cos(angle), across * Math.sin(angle), z)
-    })
     for (const coverage of [0.25, 0.6]) {
       const state = stateOf({ coverage })
       const covers = directions.map(
@@ -91,6 +92,22 @@ describe('cloudExtinction', () => {
       // Systems are few: their number scatters.
       expect(Math.abs(mean - coverage), `${mean} for ${coverage}`).toBeLessThan(0.06)
     }
+  })
+
+  it('gathers storms in the convergence zones, with few where air sinks', () => {
+    const state = stateOf({ ...cloudPreset('cumulonimbus').at(0).parameters, shear: 0 })
+    const areas = directions.map(
+      up => weatherAt(state, noise, 0, at(up, 0), 100).storm!.radius ** 2
+    )
+    const meanOf = (from: number, to: number): number => {
+      const own = areas.filter(
+        (_, i) => from <= Math.abs(directions[i].z) && Math.abs(directions[i].z) < to
+      )
+      return own.reduce((a, b) => a + b) / own.length
+    }
+    // Sines of latitudes.
+    const ratio = meanOf(0, 0.15) / meanOf(0.33, 0.5)
+    expect(ratio, 'area of storms at the equator over the subtropics').toBeGreaterThan(5)
   })
 })
 

@@ -1,4 +1,4 @@
-import { float, int, smoothstep, vec4 } from 'three/tsl'
+import { float, int, mix, smoothstep, vec4 } from 'three/tsl'
 import { footprintOf } from '../../density/tsl/sample'
 import { extinctionNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
@@ -35,6 +35,12 @@ const FEWEST_STEPS = 2
 const ABOVE = 0.35
 
 /**
+ * Most of an isolated cloud above or below a place that counts for light of sky and ground: the rest is open to its sides [m].
+ * Greater: shaded sides of towers are flat, as if cut out of paper (*Storm*).
+ */
+const MOST_REACH = 700
+
+/**
  * Widest isolated clouds, over their layer's thickness: low light crosses no more of one where no shadow map is [–].
  * Greater: far clouds are dark at sunset (*World clouds*).
  */
@@ -65,8 +71,12 @@ export function localDepths(
   { sample, weather, layers: { base, top, layered } }: ShadedSample,
   { direction: toLight, isMapped, cosine: cosLight }: ShadingLight
 ): LocalDepths {
-  const rise = top.sub(sample.altitude).max(1).toConst()
-  const fall = sample.altitude.sub(base).max(1).toConst()
+  const [rise, fall] = [top.sub(sample.altitude), sample.altitude.sub(base)].map(length =>
+    length.max(1).toConst()
+  )
+  const [above, below] = [rise, fall].map(length =>
+    mix(length.min(MOST_REACH), length, layered).toConst()
+  )
   const slant = cosLight.abs().max(LOWEST_COSINE).reciprocal().toConst()
   const toTop = cosLight.greaterThan(0).select(rise, fall).mul(slant).toConst() as Float
   const lowness = smoothstep(-LOW_LIGHT, -LOWEST_LIGHT, cosLight.abs().negate()).toConst() as Float
@@ -89,7 +99,7 @@ export function localDepths(
     const from = float(index).div(float(count)).toConst() as Float
     const to = float(index).add(1).div(float(count)).toConst() as Float
     const [start, end] = [from.mul(from).mul(probed), to.mul(to).mul(probed)]
-    const middle = isUpwards.select(rise.mul(ABOVE), start.add(end).mul(0.5)).toConst() as Float
+    const middle = isUpwards.select(above.mul(ABOVE), start.add(end).mul(0.5)).toConst() as Float
     const direction = isUpwards.select(sample.up, toLight) as Vec3
     const offset = sample.offset.add(direction.mul(middle)).toConst() as Vec3
     const { altitude, up } = field.view.localCoordinates(offset)
@@ -119,7 +129,10 @@ export function localDepths(
     .add(depthToLight.add(behind).mul(unmapped))
     .max(depthToLight)
     .toConst() as Float
-  const above = rise.mul(found.x.mul(ABOVE / 2).add(found.z.mul(0.5)))
-  const below = fall.mul(found.x).mul(layered.add(1).mul(BELOW))
-  return { toLight: depthToLight, through, above, below }
+  return {
+    toLight: depthToLight,
+    through,
+    above: above.mul(found.x.mul(ABOVE / 2).add(found.z.mul(0.5))),
+    below: below.mul(found.x).mul(layered.add(1).mul(BELOW))
+  }
 }
