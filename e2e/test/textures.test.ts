@@ -212,7 +212,7 @@ it('features of the clouds sample as many textures as their README says', async 
     expect(['–', `${shaded - lit - 1}`]).toEqual(stated('clouds', `${feature} |`))
   }
   const march = await inPass(world => world.clouds(picture()), 'Welkin.CloudsMarch')
-  expect(march).toBe(7)
+  expect(march).toBe(8)
   const shade = await inPass(world => world.clouds(picture()), 'Welkin.CloudsShade')
   expect(shade).toBe(11)
   const rainy = await inPass(({ air, depth, camera, atmosphere }) => {

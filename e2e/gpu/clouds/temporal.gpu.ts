@@ -176,6 +176,32 @@ gpuTest(
   { backends: ['webgpu'], timeoutSeconds: 300 }
 )
 
+gpuTest(
+  'rays that begin where the last frame has found clouds see what whole ones see',
+  t =>
+    withShared(
+      t,
+      async shared => {
+        const sky = new Sky(shared, 'medium', narrow.fieldOfView)
+        const found = blockMeans(await sky.settle(80))
+        const { frame } = sky.node.passes.viewRays
+        const next = frame.next.bind(frame)
+        frame.next = (...inputs) => {
+          next(...inputs)
+          expectTrue(frame.unsureUntil.value === 0, 'rays do not go by the last frame')
+          frame.unsureUntil.value = 1e12
+        }
+        const expected = blockMeans(await sky.settle(80))
+        const part = apart(found, expected) / mean(expected)
+        t.note(`off by ${(100 * part).toFixed(3)} %`)
+        expectTrue(part < 0.002, `rays that begin at clouds are off by ${part}`)
+        sky.dispose()
+      },
+      narrow.size
+    ),
+  { backends: ['webgpu'], timeoutSeconds: 300 }
+)
+
 // Six frames after a turn new pixels of `medium` have 6 samples of 16, those of `high` 6 of 9: 2.2 and 1.0 %.
 for (const [quality, most] of [
   ['medium', 0.024],

@@ -14,6 +14,7 @@ import { upscale } from '../temporal/tsl/upscale'
 import { CastLight, type CastScene } from './CastLight'
 import { FallPass } from './FallPass'
 import { withAerialPerspective } from './tsl/aerialPerspective'
+import { clearAir, packFound, unpackFound } from './tsl/clearAir'
 import { marchClouds } from './tsl/march'
 import { marchedPixel, type MarchedTargets } from './tsl/marchedPixel'
 import { shadePoints } from './tsl/shadePoints'
@@ -56,18 +57,25 @@ function texturesOf({ textures }: RenderTarget): Record<keyof CloudTargets, Chan
   return { light, distances }
 }
 
-/** Marches one pixel of each block: {@link MarchedTargets}. */
-function marchPixels(scene: CloudScene): Outputs {
+/**
+ * Marches one pixel of each block: {@link MarchedTargets}.
+ *
+ * @param last - The last frame of them.
+ */
+function marchPixels(scene: CloudScene, last: CloudTargets): Outputs {
   const { viewRays } = scene
   return outputs<[Vec4, Vec4, Vec4]>(3, ([distances, shares, ray]) => {
-    const { at, noise } = marchedPixel(viewRays)
+    const { block, at, noise } = marchedPixel(viewRays)
     const viewRay = viewRayAt(viewRays, at)
     const end = viewRayEnd(viewRays, at, viewRay)
-    const marched = marchClouds(scene, { direction: viewRay.direction, end, jitter: noise })
-    const { points, transmittance, distance, steps } = marched
+    const known = clearAir(viewRays, last.distances, block, viewRay.ndc)
+    const clear = { ...known, unsureUntil: viewRays.frame.unsureUntil }
+    const marched = marchClouds(scene, { direction: viewRay.direction, end, jitter: noise, clear })
+    const { points, transmittance, distance, first, steps } = marched
+    const found = packFound({ first, until: known.until, end, steps })
     distances.assign(points.distances)
     shares.assign(points.shares)
-    ray.assign(vec4(encodeDistance(distance), encodeDistance(end), transmittance, steps.div(256)))
+    ray.assign(vec4(encodeDistance(distance), encodeDistance(end), transmittance, found))
   })
 }
 
@@ -88,7 +96,8 @@ function shadePixels(
       ? vec4(encodeDistance(fallen.distance), fallen.end, fallen.transmittance, fallen.steps)
       : cast.rayAt(here).ray
     color.assign(vec4(0, 0, 0, 1))
-    distances.assign(vec4(ray.xy, 0, ray.w))
+    const { code, steps } = unpackFound(ray.w)
+    distances.assign(vec4(ray.xy, code, steps))
     If(ray.z.lessThan(1), () => {
       const { direction, directionView } = viewRayAt(viewRays, at)
       const points = {
@@ -145,7 +154,7 @@ export class CloudRenderer {
     this.#field = compiledByKinds(field)
     const scene = { ...inputs, field: this.#field, weatherMap: this.#weatherMap }
     this.viewRays = viewRays
-    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene))
+    this.#march = new FragmentPass('Welkin.CloudsMarch', marchPixels(scene, this.marched))
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
     this.seen = { distances, shares, ray }
     this.#cast = new CastLight(scene, this.seen)

@@ -70,7 +70,7 @@ export class FallPass {
       distance: ray.x.exp2().toConst(),
       end: ray.y,
       transmittance: ray.z,
-      steps: steps.div(256).toConst(),
+      steps: steps.div(2048).toConst(),
       before: ray.w.sub(steps).div(BEHIND).toConst()
     }
   }
@@ -99,7 +99,7 @@ function draw(
     const looked = { direction, jitter: noise, marched: ray, litFall }
     const seen = precipitation.among(scene, looked, { distances, shares })
     radiance.assign(seen.radiance)
-    const steps = float(ray.w.mul(256).round()).add(seen.before.clamp().mul(BEHIND))
+    const steps = float(ray.w.mul(2048).round()).add(seen.before.clamp().mul(BEHIND))
     fallen.assign(vec4(encodeDistance(seen.distance), ray.y, seen.transmittance, steps))
   })
 }

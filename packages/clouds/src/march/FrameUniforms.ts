@@ -6,6 +6,8 @@ import { CloudLayers } from '../layers/CloudLayers'
 import { LAYER_STRIDE } from '../layers/layerUniforms'
 import { nightGain } from '../light/NightLight'
 import { vec4Array } from '../tsl-types'
+import { FAR_AWAY } from './tsl/layerBoundaries'
+import { ROUND } from './tsl/clearAir'
 import { matrix3, matrix4, number, vector2 } from '../uniforms'
 
 /** Order in which the pixels of a block are marched: neighbours in time are far apart. */
@@ -64,6 +66,9 @@ const LIGHT_CUT = 4
 /** `luminanceScale` by day, up to which light is raised by night [1/(cd/m²)]. */
 const DAYLIGHT_SCALE = 1e-4
 
+/** Part of a block that clouds may move in a frame for rays to go by what the last frame's found. Greater: near edges lag (*Cockpit*). */
+const BLOCK_PART = 0.5
+
 /** Squared displacement below which the camera [m²] and the sun's direction count as still. */
 const NO_MOVE = 1e-12
 
@@ -85,6 +90,15 @@ function cloudInputs({ values, night, ambient }: CloudField, lightVersion: numbe
     lightVersion
   ]
 }
+
+/** Vectors of a layer before its last lattice, which camera and wind move. */
+const FORM_SLOTS = LAYER_STRIDE - 3
+
+/** Form of the clouds, without what camera and wind move, as numbers to compare with the last frame's. */
+const cloudForms = ({ values }: CloudField): number[] =>
+  values.flatMap((vector, i) =>
+    i % LAYER_STRIDE < FORM_SLOTS ? formOf(vector, i % LAYER_STRIDE) : []
+  )
 
 const _projection = new Matrix4()
 const _toPrevious = new Matrix4()
@@ -128,6 +142,10 @@ export class FrameUniforms {
   readonly originArray = vec4Array(this.origins)
   /** 0 where there is no last frame. */
   readonly hasHistory = number()
+  /** Frames so far, in [0, `ROUND`): tiles of rays take turns by it. */
+  readonly turn = number()
+  /** Distance up to which clouds may have moved to another block since the last frame; `FAR_AWAY` where they have changed [m]. */
+  readonly unsureUntil = number(FAR_AWAY)
   /** Most accumulated samples of a pixel. */
   readonly maxSamples = number(1)
   /** Half width of the variance clip [standard deviations]. */
@@ -146,6 +164,10 @@ export class FrameUniforms {
   /** The last frame's `cloudInputs`, and its view and projection matrices. */
   #inputs: readonly number[] = []
   #matrices: readonly number[] = []
+  /** The last frame's `cloudForms`. */
+  #forms: readonly number[] = []
+  /** Way of camera and clouds against each other since the last frame [m]. */
+  #speed = 0
   /** Frames until history has forgotten what was before the last change of light or clouds. */
   #forgetting = 0
 
@@ -187,6 +209,12 @@ export class FrameUniforms {
     const isCut = !usesHistory || this.#isCut(view.height, field)
     this.hasHistory.value = isCut ? 0 : 1
     const isAtRest = this.#setReprojection(view, field)
+    const forms = cloudForms(field)
+    const isKnown = !isCut && isSame(forms, this.#forms)
+    const known = this.#speed / (BLOCK_PART * block * field.pixelAngle.value)
+    this.unsureUntil.value = isKnown ? known : FAR_AWAY
+    this.turn.value = this.#count % ROUND
+    this.#forms = forms
     const frames = ORDERS[block].length
     this.#countForgetting(isCut, frames, view.lightDirection, cloudInputs(field, lightVersion))
     const matrices = [...view.viewToMapped.elements, ...projection.elements]
@@ -250,7 +278,9 @@ export class FrameUniforms {
         .multiply(rays)
       isAtRest = _delta.lengthSq() < NO_MOVE
     }
+    this.#speed = 0
     field.drifts.forEach((drift, i) => {
+      this.#speed = Math.max(this.#speed, _delta.distanceTo(drift))
       const { x, y, z, w } = _origin.set(-drift.x, -drift.y, -drift.z, 1).applyMatrix4(_toPrevious)
       this.origins[i].set(x, y, w, z)
       isAtRest &&= drift.lengthSq() === 0

@@ -6,6 +6,7 @@ import type { CloudSample } from '../../density/tsl/sample'
 import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
 import { FAR_AWAY, layersAt, nextLayerBoundary } from './layerBoundaries'
+import type { ClearAir } from './clearAir'
 import { addPair, seenClouds, seenState, endStratum, type SeenClouds } from './seenPoints'
 import { advance, enterSteps, nextSteps, stepState } from './steps'
 
@@ -27,12 +28,16 @@ export interface CloudRay {
   end: Float
   /** Noise that shifts the steps of the ray, in [0, 1). */
   jitter: Float
+  /** Its clear air, and the distance up to which this may be out of date [m]. Left out, it is marched whole. */
+  clear?: ClearAir & { unsureUntil: Float }
 }
 
 /** Clouds on a ray. */
 export interface MarchedClouds extends SeenClouds {
   /** Steps that were taken. */
   steps: Float
+  /** Distance of the first cloud; 0 if there is none [m]. */
+  first: Float
 }
 
 /** The stretch of a ray between two layer boundaries; before the first it has ended. */
@@ -51,7 +56,7 @@ const segmentState = () => ({
  */
 export function marchClouds(
   { field, weatherMap, light, quality }: Omit<ShadingContext, 'shadows'>,
-  { direction, end, jitter }: CloudRay
+  { direction, end, jitter, clear: known }: CloudRay
 ): MarchedClouds {
   const { view } = field
   const cosView = direction.dot(view.up).clamp(-1, 1).toConst() as Float
@@ -69,6 +74,8 @@ export function marchClouds(
   const position = float(0).toVar()
   /** Distance of the first layer; 0 before. */
   const entry = float(0).toVar()
+  /** Distance of the first cloud; 0 before. */
+  const first = float(0).toVar()
 
   const { length } = field.layers
   const isNested = weatherMap !== undefined && length >= NESTED_FROM
@@ -105,9 +112,24 @@ export function marchClouds(
     const clouds = samplePair(field, weatherMap, clear, middle, length, direction, range)
     const found = { ...clouds, greatest: clouds.greatest.mul(light.depthScale) }
     const accept = (): void => {
+      first.assign(first.equal(0).select(position.max(1), first))
       addPair(seen, clouds.extinction.mul(light.depthScale).mul(length).toConst(), places)
     }
     position.addAssign(advance(state, pair, quality, found, accept))
+  }
+
+  const skipClear = (): void => {
+    if (known === undefined) return
+    const { until, from, unsureUntil } = known
+    const isInLayer = entry.greaterThan(0).and(position.greaterThanEqual(unsureUntil))
+    If(isInLayer.and(first.equal(0)).and(state.isFine.not()), () => {
+      If(position.lessThan(until), () => {
+        position.assign(until)
+        state.likely.assign(0)
+      }).ElseIf(position.greaterThan(from), () => {
+        position.assign(FAR_AWAY)
+      })
+    })
   }
 
   loop('cloudSegment', isNested ? CROSSINGS * length + 1 : quality.pairs, () => {
@@ -120,12 +142,16 @@ export function marchClouds(
         If(isDone(segment.end), () => {
           Break()
         })
-        goOn()
+        skipClear()
+        If(position.lessThan(segment.end), goOn)
       })
     } else {
-      If(position.greaterThanEqual(segment.end), enterSegment).Else(goOn)
+      If(position.greaterThanEqual(segment.end), enterSegment).Else(() => {
+        skipClear()
+        If(position.lessThan(segment.end), goOn)
+      })
     }
   })
   const nothing = entry.greaterThan(0).select(entry, end.min(FAR_AWAY)) as Float
-  return { ...seenClouds(seen, nothing), steps: float(pairs).mul(2) }
+  return { ...seenClouds(seen, nothing), steps: float(pairs).mul(2), first }
 }

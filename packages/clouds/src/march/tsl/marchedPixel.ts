@@ -8,14 +8,14 @@ export interface MarchedTargets {
   /** Distances of `SeenPoints` [m], and their shares. */
   readonly distances: LevelTexture<Vec2>
   readonly shares: LevelTexture<Vec2>
-  /** log₂ of the clouds' distance, log₂ of the distance of what was drawn, transmittance, steps over 256. */
+  /** log₂ of the clouds' distance, log₂ of the distance of what was drawn, transmittance, `packFound`. */
   readonly ray: LevelTexture<Vec2>
 }
 
 /** Pixel of each block that is marched, of a picture with one texel for each block. */
-export function marchedPixel({ frame }: FrameInputs): { at: Vec2; noise: Float } {
+export function marchedPixel({ frame }: FrameInputs): { block: Vec2; at: Vec2; noise: Float } {
   const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
   const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
   const at = pixel.add(0.5).div(frame.size).toConst() as Vec2
-  return { at, noise: interleavedNoise(block, frame.noiseShift) }
+  return { block, at, noise: interleavedNoise(block, frame.noiseShift) }
 }

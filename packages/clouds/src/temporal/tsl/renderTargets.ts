@@ -3,7 +3,7 @@ import type { Float, LevelTexture, Vec2, Vec4 } from '../../tsl-types'
 /**
  * Textures of a render target of clouds. What `distances` holds depends on the target:
  *
- * - marched: log₂ of the clouds' distance, log₂ of the distance of what was drawn, 0, steps over 256
+ * - marched: log₂ of the clouds' distance, log₂ of the distance of what was drawn, what `clearAir` reads, steps over 256
  * - cells: see `Cell`
  * - history: the same two distances and the accumulated samples as bytes: see `pack`
  */
