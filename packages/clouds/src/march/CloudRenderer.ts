@@ -83,16 +83,18 @@ function shadePixels(
     const { at, noise } = marchedPixel(viewRays)
     const here = uv() as unknown as Vec2
     const found = cast.pointsAt(here)
-    const fallen = fall?.read(here)
+    const own = cast.rayAt(here).ray
+    const seenAt = marched.distances.sample(here).level(0).toConst() as Vec4
+    const fallen = fall?.read(here, own, { distances: seenAt, shares: found.shares })
     const ray = fallen
-      ? vec4(encodeDistance(fallen.distance), fallen.end, fallen.transmittance, fallen.steps)
-      : cast.rayAt(here).ray
+      ? vec4(encodeDistance(fallen.distance), own.y, own.z.mul(fallen.transmittance), own.w)
+      : own
     color.assign(vec4(0, 0, 0, 1))
     distances.assign(vec4(ray.xy, 0, ray.w))
     If(ray.z.lessThan(1), () => {
       const { direction, directionView } = viewRayAt(viewRays, at)
       const points = {
-        distances: marched.distances.sample(here).level(0).toConst() as Vec4,
+        distances: seenAt,
         shares: found.shares,
         lit: cast.litOn(found, direction, noise)
       }
@@ -184,7 +186,7 @@ export class CloudRenderer {
     const down = Math.ceil(height / block)
     this.#marchedTarget.setSize(across, down)
     this.#cast.setSize(across, down)
-    this.#fall?.setSize(across, down)
+    this.#fall?.setSize(across, down, block)
     this.#shadedTarget.setSize(across, down)
     this.#cellsTarget.setSize(across + 1, down + 1)
     frame.size.value.set(width, height)
