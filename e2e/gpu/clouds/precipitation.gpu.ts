@@ -112,7 +112,7 @@ function rainInTheEast(
     layers: { first: int(0), last: int(1) },
     ceiling: medium.ceiling,
     width: float(1500),
-    shortest: float(1200)
+    shortest: float(150)
   }
   return async (
     rays,
