@@ -83,18 +83,14 @@ function shadePixels(
     const { at, noise } = marchedPixel(viewRays)
     const here = uv() as unknown as Vec2
     const found = cast.pointsAt(here)
-    const own = cast.rayAt(here).ray
-    const seenAt = marched.distances.sample(here).level(0).toConst() as Vec4
-    const fallen = fall?.read(here, own, { distances: seenAt, shares: found.shares })
-    const ray = fallen
-      ? vec4(encodeDistance(fallen.distance), own.y, own.z.mul(fallen.transmittance), own.w)
-      : own
+    const fallen = fall?.read(here)
+    const ray = fallen?.ray ?? cast.rayAt(here).ray
     color.assign(vec4(0, 0, 0, 1))
     distances.assign(vec4(ray.xy, 0, ray.w))
     If(ray.z.lessThan(1), () => {
       const { direction, directionView } = viewRayAt(viewRays, at)
       const points = {
-        distances: seenAt,
+        distances: marched.distances.sample(here).level(0).toConst() as Vec4,
         shares: found.shares,
         lit: cast.litOn(found, direction, noise)
       }

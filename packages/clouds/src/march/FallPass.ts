@@ -1,7 +1,7 @@
 import { FragmentPass, outputs, tableTarget, type Outputs } from '@welkin/atmosphere'
-import { NearestFilter } from 'three'
-import { float, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
-import type { Node, Renderer } from 'three/webgpu'
+import { FloatType, NearestFilter, type RenderTarget } from 'three'
+import { float, If, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import type { Renderer } from 'three/webgpu'
 import type { ShadingContext } from '../light/tsl/shadingContext'
 import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
@@ -10,7 +10,6 @@ import type { Float, LevelTexture, Variable, Vec2, Vec3, Vec4 } from '../tsl-typ
 import type { CastLight } from './CastLight'
 import { fallBlockOf } from './FrameUniforms'
 import type { MarchedTargets } from './tsl/marchedPixel'
-import type { SeenPoints } from './tsl/seenPoints'
 import { viewRayAt, type FrameInputs } from './tsl/viewRay'
 
 /** Inputs of the pass. */
@@ -18,17 +17,19 @@ export interface FallScene extends ShadingContext {
   readonly viewRays: FrameInputs
 }
 
-/** What falls before and behind the clouds of a pixel. */
+/** What falls before and behind the clouds of a pixel, and the ray of both. */
 export interface FallOnPixel {
   /** Spectral radiance for unit irradiance of the bare sun [1/sr]. */
   readonly radiance: Vec4
-  /** Share of light that passes it. */
-  readonly transmittance: Float
   /** Share of the clouds' light that passes what falls before them. */
   readonly before: Float
-  /** Mean distance of clouds and of what falls, by what is seen of them [m]. */
-  readonly distance: Float
+  /** `MarchedTargets.ray` of clouds and of what falls. */
+  readonly ray: Vec4
 }
+
+/** Factor of a share in [0, 1] that is kept behind a whole number, and of steps over 256. */
+const BEHIND = 0.5
+const STEPS = 256
 
 /**
  * log₂ of ends over which a ray is left out that ends before the pixel's does, and the weight that is left: greater, and rain before a ridge
@@ -52,9 +53,10 @@ const CORNERS = [
  */
 export class FallPass {
   readonly #frame: FrameInputs['frame']
-  readonly #target = tableTarget('Welkin.CloudsFall', 1, 1, 2, NearestFilter)
-  readonly #pass: FragmentPass
-  readonly #fallen: readonly LevelTexture<Vec2>[]
+  readonly #target = fallTarget('Fall')
+  readonly #spreadTarget = fallTarget('FallSpread')
+  readonly #passes: readonly FragmentPass[]
+  readonly #spread: readonly LevelTexture<Vec2>[]
 
   constructor(
     scene: FallScene,
@@ -63,86 +65,60 @@ export class FallPass {
     cast: CastLight
   ) {
     this.#frame = scene.viewRays.frame
-    this.#fallen = this.#target.textures.map(each => texture(each) as unknown as LevelTexture<Vec2>)
-    this.#pass = new FragmentPass('Welkin.CloudsFall', draw(scene, precipitation, marched, cast))
+    const fallen = nodesOf(this.#target)
+    this.#spread = nodesOf(this.#spreadTarget)
+    // Ends and steps are too fine for half floats.
+    this.#spreadTarget.textures[1].type = FloatType
+    this.#passes = [
+      new FragmentPass('Welkin.CloudsFall', draw(scene, precipitation, marched, cast)),
+      new FragmentPass('Welkin.CloudsFallSpread', spread(scene, fallen, marched, cast))
+    ]
   }
 
-  /** Has the pass compiled anew where casters have changed. */
+  /** Has the passes compiled anew where casters have changed. */
   set version(version: string) {
-    const { material } = this.#pass
-    material.customProgramCacheKey = () => version
-    material.needsUpdate = true
+    for (const { material } of this.#passes) {
+      material.customProgramCacheKey = () => material.name + version
+      material.needsUpdate = true
+    }
   }
 
   /** @param block - Edge of the blocks of which a frame marches one pixel each. */
   setSize(width: number, height: number, block: number): void {
     const shared = fallBlockOf(block)
     this.#target.setSize(Math.ceil(width / shared), Math.ceil(height / shared))
+    this.#spreadTarget.setSize(width, height)
   }
 
-  /** Draws the pass; the march and the casters' light go first. */
+  /** Draws the passes; the march and the casters' light go first. */
   render(renderer: Renderer): void {
-    this.#pass.render(renderer, this.#target)
+    const [draw, spread] = this.#passes
+    draw.render(renderer, this.#target)
+    spread.render(renderer, this.#spreadTarget)
   }
 
-  /**
-   * Precipitation before and behind the clouds of a pixel. To be called inside of a shader function.
-   *
-   * @param here - Place in the marched picture.
-   * @param ray - Its ray: log₂ of the clouds' distance and of its end, transmittance.
-   * @param points - Clouds on it.
-   */
-  read(here: Vec2, ray: Vec4, { distances, shares }: SeenPoints): FallOnPixel {
-    const { marchedSize, fallBlock, fallPixel, nightGain } = this.#frame
-    const size = marchedSize.div(fallBlock).ceil().toConst() as Vec2
-    const place = here.mul(marchedSize).floor().sub(fallPixel).div(fallBlock).toConst() as Vec2
-    const first = place.floor().toConst() as Vec2
-    const part = place.sub(first).toConst() as Vec2
-    const end = endOf(ray, distances)
-    const radiance = vec4(0).toVar() as Variable<Vec4>
-    /** Sums of opacity, and by that of its stretch. */
-    const sums = vec3(0).toVar() as Variable<Vec3>
-    const weights = float(0).toVar() as Variable<Float>
-    for (const [x, y] of CORNERS) {
-      const index = first.add(vec2(x, y)).clamp(vec2(0), size.sub(1))
-      const at = index.add(0.5).div(size).toConst() as Vec2
-      const [light, fallen] = this.#fallen.map(each => each.sample(at).level(0).toConst() as Vec4)
-      const between = (x ? part.x : part.x.oneMinus()).mul(y ? part.y : part.y.oneMinus())
-      const fits = fallen.w.sub(end).smoothstep(...SAME_END).add(LEAST_WEIGHT)
-      const weight = between.mul(fits).toConst() as Float
-      radiance.addAssign(light.mul(weight))
-      sums.addAssign(vec3(1, fallen.yz).mul(fallen.x.mul(weight)))
-      weights.addAssign(weight)
-    }
-    const opacity = sums.x.div(weights).toConst() as Float
-    const [middle, half] = [sums.y, sums.z].map(
-      sum => sum.div(sums.x.max(1e-6)).exp2().toConst() as Float
-    )
-    /** Part of it that lies before distances. */
-    const before = <T extends Float | Vec4>(distance: T): T =>
-      (distance as Float).sub(middle).div(half.mul(2)).add(0.5).clamp().toConst() as Node as T
-    const all = before(end.exp2() as Float)
-    const beforePoints = before(distances)
-    const hidden = shares.dot(vec4(all).sub(beforePoints).max(0))
-    const seen = all.sub(hidden).max(0).toConst() as Float
-    const through = beforePoints.mul(opacity).oneMinus()
-    const ofClouds = shares.dot(through).toConst() as Float
-    const weight = opacity.mul(seen).max(1e-9).toConst() as Float
-    const own = middle.mul(weight).add(ray.x.exp2().mul(ofClouds)).div(weight.add(ofClouds))
+  /** Precipitation before and behind the clouds of a pixel. To be called inside of a shader function. */
+  read(here: Vec2): FallOnPixel {
+    const [light, ray] = this.#spread.map(each => each.sample(here).level(0).toConst() as Vec4)
+    const steps = ray.w.floor().toConst() as Float
     return {
-      radiance: radiance.mul(seen).div(weights.mul(nightGain)).toConst(),
-      transmittance: opacity.mul(all).oneMinus().toConst(),
-      before: ofClouds.div(shares.dot(vec4(1)).max(1e-6)).toConst(),
-      distance: opacity.greaterThan(0).select(own, ray.x.exp2()).toConst() as Float
+      radiance: light.div(this.#frame.nightGain).toConst(),
+      before: ray.w.sub(steps).div(BEHIND).toConst(),
+      ray: vec4(ray.xyz, steps.div(STEPS)).toConst()
     }
   }
 
   /** Frees its textures. */
   dispose(): void {
-    this.#target.dispose()
-    this.#pass.dispose()
+    for (const each of [this.#target, this.#spreadTarget, ...this.#passes]) each.dispose()
   }
 }
+
+const fallTarget = (name: string): RenderTarget =>
+  tableTarget(`Welkin.Clouds${name}`, 1, 1, 2, NearestFilter)
+
+const nodesOf = ({ textures }: RenderTarget): LevelTexture<Vec2>[] =>
+  textures.map(each => texture(each) as unknown as LevelTexture<Vec2>)
 
 /** log₂ of where a ray ends: nothing is seen behind opaque clouds. */
 const endOf = (ray: Vec4, { x, y, z, w }: Vec4): Float =>
@@ -174,5 +150,70 @@ function draw(
     radiance.assign(seen.radiance.mul(nightGain))
     const [middle, half, end] = [seen.distance, seen.half, seen.end].map(encodeDistance)
     fallen.assign(vec4(seen.opacity, middle, half, end))
+  })
+}
+
+/** Spreads what rays have found over the pixels between them: before and behind each pixel's own clouds, up to its own end. */
+function spread(
+  { viewRays }: FallScene,
+  fallen: readonly LevelTexture<Vec2>[],
+  marched: MarchedTargets,
+  cast: CastLight
+): Outputs {
+  const { marchedSize, fallBlock, fallPixel } = viewRays.frame
+  return outputs<[Vec4, Vec4]>(2, ([radiance, seen]) => {
+    const here = uv() as unknown as Vec2
+    const size = marchedSize.div(fallBlock).ceil().toConst() as Vec2
+    const place = here.mul(marchedSize).floor().sub(fallPixel).div(fallBlock).toConst() as Vec2
+    const first = place.floor().toConst() as Vec2
+    const part = place.sub(first).toConst() as Vec2
+    const { ray } = cast.rayAt(here)
+    const { shares } = cast.pointsAt(here)
+    const distances = marched.distances.sample(here).level(0).toConst() as Vec4
+    const end = endOf(ray, distances)
+    const corners = CORNERS.map(([x, y]) => {
+      const index = first.add(vec2(x, y)).clamp(vec2(0), size.sub(1))
+      const at = index.add(0.5).div(size).toConst() as Vec2
+      const own = fallen[1].sample(at).level(0).toConst() as Vec4
+      const between = (x ? part.x : part.x.oneMinus()).mul(y ? part.y : part.y.oneMinus())
+      const fits = own.w.sub(end).smoothstep(...SAME_END).add(LEAST_WEIGHT)
+      return { at, own, weight: between.mul(fits).toConst() as Float }
+    })
+    const weights = corners.reduce<Float>((sum, { weight }) => sum.add(weight), float(0))
+    const most = corners.reduce<Float>((sum, { own }) => sum.max(own.x), float(0))
+    radiance.assign(vec4(0))
+    const steps = ray.w.mul(STEPS).round().toConst() as Float
+    seen.assign(vec4(ray.xyz, steps.add(BEHIND)))
+    If(most.greaterThan(0), () => {
+      /** Sums of opacity, and by that of its stretch. */
+      const sums = vec3(0).toVar() as Variable<Vec3>
+      const light = vec4(0).toVar() as Variable<Vec4>
+      for (const { at, own, weight } of corners) {
+        sums.addAssign(vec3(1, own.yz).mul(own.x.mul(weight)))
+        light.addAssign(fallen[0].sample(at).level(0).mul(weight))
+      }
+      const perWeight = weights.reciprocal().toConst() as Float
+      const opacity = sums.x.mul(perWeight).toConst() as Float
+      const [middle, half] = [sums.y, sums.z].map(
+        sum => sum.div(sums.x.max(1e-6)).exp2().toConst() as Float
+      )
+      /** Parts of it that lie before distances. */
+      const before = (distance: Vec4): Vec4 =>
+        distance.sub(middle).div(half.mul(2)).add(0.5).clamp().toConst() as Vec4
+      const all = before(vec4(end.exp2())).x
+      const beforePoints = before(distances)
+      const hidden = shares.dot(vec4(all).sub(beforePoints).max(0))
+      const shown = all.sub(hidden).max(0).toConst() as Float
+      const ofClouds = shares.dot(beforePoints.mul(opacity).oneMinus()).toConst() as Float
+      const weight = opacity.mul(shown).toConst() as Float
+      const both = weight.add(ofClouds).max(1e-9)
+      const distance = middle.mul(weight).add(ray.x.exp2().mul(ofClouds)).div(both)
+      const through = opacity.mul(all).oneMinus().mul(ray.z)
+      const share = ofClouds.div(shares.dot(vec4(1)).max(1e-6)).clamp()
+      radiance.assign(light.mul(shown.mul(perWeight)))
+      seen.assign(
+        vec4(encodeDistance(distance), ray.y, through, steps.add(share.mul(BEHIND)))
+      )
+    })
   })
 }

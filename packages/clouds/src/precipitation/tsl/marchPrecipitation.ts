@@ -20,7 +20,7 @@ import type { FallNodes } from './fallColumn'
 import type { FallStretch } from './fallStretch'
 
 /** Most steps of a ray over the quality's `layerSteps`. Fewer: the far end of rain is coarse (*Rain and snow*). */
-const STEPS = 2
+const STEPS = 2.5
 
 /** `layerSteps` for which steps are as long as streaks ask for: with fewer they are longer, by at most `COARSEST`, with more shorter. */
 const FINE_STEPS = 18
@@ -28,7 +28,7 @@ const COARSEST = 2
 const FINEST = 0.25
 
 /** Length of a step over its distance from the camera, at least [–]. Greater: grain in far shafts (*Rain and snow*). */
-const GROWTH = 0.02
+const GROWTH = 0.012
 
 /**
  * Lengths of steps where nothing falls, over those in what falls, and the rank of columns from which on they begin to shorten. Longer: edges
