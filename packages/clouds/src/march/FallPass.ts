@@ -125,7 +125,7 @@ const endOf = (ray: Vec4, { x, y, z, w }: Vec4): Float =>
   ray.z
     .greaterThan(0)
     .select(ray.y, encodeDistance(x.max(y).max(z.max(w))))
-    .toConst() as Float
+    .toConst()
 
 function draw(
   scene: FallScene,
@@ -140,7 +140,7 @@ function draw(
     const own = texel.mul(fallBlock).add(fallPixel).min(marchedSize.sub(1)).toConst() as Vec2
     const here = own.add(0.5).div(marchedSize).toConst() as Vec2
     const pixel = own.mul(block).add(jitter).min(size.sub(1))
-    const { direction } = viewRayAt(scene.viewRays, pixel.add(0.5).div(size).toConst() as Vec2)
+    const { direction } = viewRayAt(scene.viewRays, pixel.add(0.5).div(size).toConst())
     const { ray, litFall } = cast.rayAt(here)
     const distances = marched.distances.sample(here).level(0).toConst() as Vec4
     const noise = interleavedNoise(texel, noiseShift)
@@ -176,8 +176,11 @@ function spread(
       const at = index.add(0.5).div(size).toConst() as Vec2
       const own = fallen[1].sample(at).level(0).toConst() as Vec4
       const between = (x ? part.x : part.x.oneMinus()).mul(y ? part.y : part.y.oneMinus())
-      const fits = own.w.sub(end).smoothstep(...SAME_END).add(LEAST_WEIGHT)
-      return { at, own, weight: between.mul(fits).toConst() as Float }
+      const fits = own.w
+        .sub(end)
+        .smoothstep(...SAME_END)
+        .add(LEAST_WEIGHT)
+      return { at, own, weight: between.mul(fits).toConst() }
     })
     const weights = corners.reduce<Float>((sum, { weight }) => sum.add(weight), float(0))
     const most = corners.reduce<Float>((sum, { own }) => sum.max(own.x), float(0))
@@ -199,7 +202,7 @@ function spread(
       )
       /** Parts of it that lie before distances. */
       const before = (distance: Vec4): Vec4 =>
-        distance.sub(middle).div(half.mul(2)).add(0.5).clamp().toConst() as Vec4
+        distance.sub(middle).div(half.mul(2)).add(0.5).clamp().toConst()
       const all = before(vec4(end.exp2())).x
       const beforePoints = before(distances)
       const hidden = shares.dot(vec4(all).sub(beforePoints).max(0))
@@ -211,9 +214,7 @@ function spread(
       const through = opacity.mul(all).oneMinus().mul(ray.z)
       const share = ofClouds.div(shares.dot(vec4(1)).max(1e-6)).clamp()
       radiance.assign(light.mul(shown.mul(perWeight)))
-      seen.assign(
-        vec4(encodeDistance(distance), ray.y, through, steps.add(share.mul(BEHIND)))
-      )
+      seen.assign(vec4(encodeDistance(distance), ray.y, through, steps.add(share.mul(BEHIND))))
     })
   })
 }

@@ -46,7 +46,7 @@ export function fallStretch(
   const isNear = from.lessThan(FARTHEST).select(1, 0)
   const span = last.min(end).sub(from).mul(isNear).toConst() as Float
   const first = mix(FIRST, 1, from.div(from.add(span.max(1)))).toConst() as Float
-  return { from, span, first, end: end.lessThan(last).select(end, FAR_AWAY).toConst() as Float }
+  return { from, span, first, end: end.lessThan(last).select(end, FAR_AWAY).toConst() }
 }
 
 /** Distance of a part of a stretch's steps, in [0, 1] [m]. */

@@ -140,12 +140,7 @@ export function marchPrecipitation(
       const square = part.mul(part).toConst() as Float
       // The last steps take all that is left.
       const even = left.mul(square).mul(square).mul(square)
-      const length = least
-        .max(start.mul(GROWTH))
-        .max(even)
-        .mul(leap)
-        .min(left)
-        .toConst() as Float
+      const length = least.max(start.mul(GROWTH)).max(even).mul(leap).min(left).toConst() as Float
       const at = start.add(length.mul(jitter)).toConst() as Float
       const sample = sampleAt(at, at.max(length.mul(BLUR).div(field.pixelAngle)).toConst())
       /** Extinction, the same of flakes and stones, and of ranks. */
@@ -173,7 +168,10 @@ export function marchPrecipitation(
         transmittance.mulAssign(through)
       })
       start.addAssign(length)
-      const far = float(NEAR_RANK).sub(near).div(1 + NEAR_RANK).clamp()
+      const far = float(NEAR_RANK)
+        .sub(near)
+        .div(1 + NEAR_RANK)
+        .clamp()
       leap.assign(far.mul(LEAP - 1).add(1))
       const isDone = transmittance.lessThan(LEAST_TRANSMITTANCE).or(start.add(1).greaterThan(end))
       const isEnd = isDone
