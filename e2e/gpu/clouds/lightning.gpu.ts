@@ -89,7 +89,7 @@ function meanWayOut(height: number, depths: readonly number[]): number {
 gpuTest('fog glows about a flash as in float64, and not before or after it', t =>
   inFog(t, async view => {
     const { node, atmosphere, camera, scene } = view
-    // The glow is drawn for each fourth of marched pixels: of a block each, it would be one alone in so small a picture.
+    // The glow is drawn for each third of the marched pixels: with blocks, a picture this small has too few.
     node.quality = { ...coarse, block: 1 }
     // At night: half floats beside daylight would round a glow away.
     atmosphere.setSunAngles(-30, 150)

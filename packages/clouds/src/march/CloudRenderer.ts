@@ -12,7 +12,7 @@ import { encodeDistance } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import { upscale } from '../temporal/tsl/upscale'
 import { CastLight, type CastScene } from './CastLight'
-import { FallPass } from './FallPass'
+import type { FallPass } from './FallPass'
 import { withAerialPerspective } from './tsl/aerialPerspective'
 import { marchClouds } from './tsl/march'
 import { marchedPixel, type MarchedTargets } from './tsl/marchedPixel'
@@ -147,7 +147,7 @@ export class CloudRenderer {
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
     this.seen = { distances, shares, ray }
     this.#cast = new CastLight(scene, this.seen)
-    this.#fall = precipitation && new FallPass(scene, precipitation, this.seen, this.#cast)
+    this.#fall = precipitation?.passOf(scene, this.seen, this.#cast)
     this.#shade = new FragmentPass(
       'Welkin.CloudsShade',
       shadePixels(scene, this.seen, this.#cast, this.#fall)

@@ -11,6 +11,9 @@ import { layerPeriods } from '../layers/layerUniforms'
 import { meanColumnOf } from '../layers/meanColumn'
 import { windAxis } from '../layers/wind'
 import type { ShadingContext } from '../light/tsl/shadingContext'
+import type { CastLight } from '../march/CastLight'
+import { FallPass, type FallScene } from '../march/FallPass'
+import type { MarchedTargets } from '../march/tsl/marchedPixel'
 import { POINTS } from '../march/tsl/seenPoints'
 import { GROWING_TOGETHER } from '../march/tsl/layerBoundaries'
 import type { DeckFallNodes } from '../environment/tsl/decks'
@@ -161,6 +164,11 @@ export class PrecipitationShafts {
     if (state.some((value, i) => value !== this.#state[i])) this.#version++
     this.#state = state
     return this.#version + (this.drops?.version ?? 0)
+  }
+
+  /** The pass that draws it, for the clouds of a node. */
+  passOf(scene: FallScene, marched: MarchedTargets, cast: CastLight): FallPass {
+    return new FallPass(scene, this, marched, cast)
   }
 
   /** Altitude above which nothing falls; below 0 where nothing falls at all [m]. */
