@@ -21,7 +21,7 @@ const WALL = 8
 const EDGE = 15
 
 /** Frames in which each of the pixels that share a ray has had its own. */
-const FRAMES = 32
+const FRAMES = 20
 
 gpuTest(
   'rain whose rays pixels share ends where a wall before it does',

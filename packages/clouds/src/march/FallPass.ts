@@ -17,7 +17,7 @@ export interface FallScene extends ShadingContext {
   readonly viewRays: FrameInputs
 }
 
-/** What falls before and behind the clouds of a pixel, and the ray of both. */
+/** Precipitation before and behind the clouds of a pixel, and the ray of both. */
 export interface FallOnPixel {
   /** Spectral radiance for unit irradiance of the bare sun [1/sr]. */
   readonly radiance: Vec4

@@ -43,7 +43,7 @@ export interface FallOnRay {
   readonly opacity: Float
   readonly distance: Float
   readonly half: Float
-  /** Where the ray ends, if that is before what falls does [m]. */
+  /** End of the ray, if that is before what falls ends; `FAR_AWAY` else [m]. */
   readonly end: Float
 }
 
