@@ -91,7 +91,7 @@ gpuTest(
         }
         const seen = marchPrecipitation(context, space, { direction, jitter: input.w }, stretch)
         return vec4(seen.weight, seen.distance, seen.spread, 0)
-      }) as Promise<Float32Array>
+      })
     }
     const { high } = cloudQualities
     const [own, fine] = [

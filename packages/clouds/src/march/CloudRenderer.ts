@@ -12,6 +12,7 @@ import { encodeDistance } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import { upscale } from '../temporal/tsl/upscale'
 import { CastLight, type CastScene } from './CastLight'
+import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
 import type { FallPass } from './FallPass'
 import { withAerialPerspective } from './tsl/aerialPerspective'
 import { marchClouds } from './tsl/march'
@@ -29,7 +30,9 @@ export function sizeOf(renderer: Renderer): { width: number; height: number } {
 }
 
 /** Inputs of a camera's passes. */
-export interface CloudScene extends ShadingContext, CastScene {}
+export interface CloudScene extends ShadingContext, CastScene {
+  readonly precipitation?: PrecipitationShafts
+}
 
 /** @param isPacked - True if distances are bytes: see `pack`. */
 function cloudTarget(name: string, isPacked = false): RenderTarget {

@@ -3,12 +3,11 @@ import { FloatType, NearestFilter, type RenderTarget } from 'three'
 import { float, If, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { ShadingContext } from '../light/tsl/shadingContext'
-import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { encodeDistance } from '../temporal/tsl/packing'
 import type { Float, LevelTexture, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
-import type { CastLight } from './CastLight'
 import { fallBlockOf } from './FrameUniforms'
+import type { FallOnRays, LitRays } from './tsl/fallOnRays'
 import type { MarchedTargets } from './tsl/marchedPixel'
 import { viewRayAt, type FrameInputs } from './tsl/viewRay'
 
@@ -58,12 +57,7 @@ export class FallPass {
   readonly #passes: readonly FragmentPass[]
   readonly #spread: readonly LevelTexture<Vec2>[]
 
-  constructor(
-    scene: FallScene,
-    precipitation: PrecipitationShafts,
-    marched: MarchedTargets,
-    cast: CastLight
-  ) {
+  constructor(scene: FallScene, precipitation: FallOnRays, marched: MarchedTargets, cast: LitRays) {
     this.#frame = scene.viewRays.frame
     const fallen = nodesOf(this.#target)
     this.#spread = nodesOf(this.#spreadTarget)
@@ -129,9 +123,9 @@ const endOf = (ray: Vec4, { x, y, z, w }: Vec4): Float =>
 
 function draw(
   scene: FallScene,
-  precipitation: PrecipitationShafts,
+  precipitation: FallOnRays,
   marched: MarchedTargets,
-  cast: CastLight
+  cast: LitRays
 ): Outputs {
   const { frame } = scene.viewRays
   return outputs<[Vec4, Vec4]>(2, ([radiance, fallen]) => {
@@ -158,7 +152,7 @@ function spread(
   { viewRays }: FallScene,
   fallen: readonly LevelTexture<Vec2>[],
   marched: MarchedTargets,
-  cast: CastLight
+  cast: LitRays
 ): Outputs {
   const { marchedSize, fallBlock, fallPixel } = viewRays.frame
   return outputs<[Vec4, Vec4]>(2, ([radiance, seen]) => {

@@ -11,8 +11,8 @@ import { layerPeriods } from '../layers/layerUniforms'
 import { meanColumnOf } from '../layers/meanColumn'
 import { windAxis } from '../layers/wind'
 import type { ShadingContext } from '../light/tsl/shadingContext'
-import type { CastLight } from '../march/CastLight'
 import { FallPass, type FallScene } from '../march/FallPass'
+import type { FallOnRay, LitRays } from '../march/tsl/fallOnRays'
 import type { MarchedTargets } from '../march/tsl/marchedPixel'
 import { POINTS } from '../march/tsl/seenPoints'
 import { GROWING_TOGETHER } from '../march/tsl/layerBoundaries'
@@ -33,18 +33,6 @@ export interface PrecipitationShaftsOptions {
    * Phase function of the drops, `raindrops({ rate: 8 })`, with rainbows; shared, not owned. Null, the default, for a smooth one.
    */
   drops?: ScatteringPhase | null
-}
-
-/** Precipitation on a ray, without the clouds on it. */
-export interface FallOnRay {
-  /** Spectral radiance for unit irradiance of the bare sun [1/sr]. */
-  readonly radiance: Vec4
-  /** Part of the picture's light that it takes, evenly over a stretch: its middle, and half of its length [m]. */
-  readonly opacity: Float
-  readonly distance: Float
-  readonly half: Float
-  /** End of the ray, if that is before what falls ends; `FAR_AWAY` else [m]. */
-  readonly end: Float
 }
 
 /** Vectors that a layer takes in the uniforms. */
@@ -167,7 +155,7 @@ export class PrecipitationShafts {
   }
 
   /** The pass that draws it, for the clouds of a node. */
-  passOf(scene: FallScene, marched: MarchedTargets, cast: CastLight): FallPass {
+  passOf(scene: FallScene, marched: MarchedTargets, cast: LitRays): FallPass {
     return new FallPass(scene, this, marched, cast)
   }
 
