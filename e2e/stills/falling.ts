@@ -4,7 +4,7 @@ export const falling = [
     name: 'shower',
     about:
       'a storm aside: diffuse slanting curtains under its base with gaps between, dark before the bright sky, no box edges',
-    clouds: { preset: 'shower' },
+    clouds: { preset: 'shower', layer: { precipitation: { rate: 12, streaks: 2 } } },
     place: { longitude: 140.376, latitude: 36.99 },
     altitude: 60,
     sun: { elevation: 30, azimuth: 280 },
@@ -24,28 +24,37 @@ export const falling = [
   },
   {
     name: 'virga',
-    about: 'streaks below altocumulus at sunset that end in the air, the strongest deepest',
+    about:
+      'combed tails below altocumulus in a low sun, which curve away with the wind and end in the air, the strongest deepest',
     clouds: {
       preset: 'altocumulus',
       layer: {
-        topAltitude: 4600,
-        coverage: 0.25,
-        weatherScale: 0.5,
-        shapeScale: 0.7,
-        precipitation: { rate: 4, share: 0.9, virgaDepth: 1500, freezingLevel: 0 }
+        topAltitude: 4400,
+        coverage: 0.12,
+        density: 0.006,
+        weatherScale: 0.6,
+        shapeScale: 0.8,
+        precipitation: { rate: 4, share: 0.9, virgaDepth: 3000, freezingLevel: 0, streaks: 2 }
       }
     },
     place: { longitude: 20, latitude: 45 },
     altitude: 60,
-    sun: { elevation: 3, azimuth: 350 },
-    view: { azimuth: 30, pitch: 24 },
+    sun: { elevation: 6, azimuth: 350 },
+    view: { azimuth: 60, pitch: 20 },
     land: 'hills'
   },
   {
     name: 'snow-shower',
     about:
       'snow below clouds that are bright in a low sun and dark at their bases, grey veils between them',
-    clouds: { preset: 'snowShower', coverage: 0.15, layer: { wind: { east: 5, north: 2 } } },
+    clouds: {
+      preset: 'snowShower',
+      coverage: 0.15,
+      layer: {
+        wind: { east: 5, north: 2 },
+        precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0, streaks: 2 }
+      }
+    },
     place: { longitude: 140.6798, latitude: 35.2496 },
     altitude: 60,
     sun: { elevation: 14, azimuth: 206 },

@@ -6,7 +6,7 @@ import {
   cloudSkyLight,
   precipitationShafts
 } from '@welkin/clouds'
-import type { CloudLayerParameters, CloudPresetName } from '@welkin/clouds'
+import type { CloudLayerParameters, CloudPrecipitation, CloudPresetName } from '@welkin/clouds'
 import { MathUtils, PerspectiveCamera, Scene } from 'three'
 import { shadow } from 'three/tsl'
 import { Air } from './air'
@@ -26,6 +26,8 @@ interface View {
   readonly coverage: number
   /** Other parameters of that layer, where the preset's are not meant. */
   readonly layer?: Partial<CloudLayerParameters>
+  /** Other parameters of what falls. */
+  readonly fall?: Partial<CloudPrecipitation>
   /** Azimuth of the sun, clockwise from north [°]. */
   readonly azimuth: number
   /** Azimuth that the camera looks to, clockwise from north [°]. */
@@ -61,11 +63,12 @@ export const VIEWS = {
   virga: {
     label: 'Virga',
     clouds: 'altocumulus',
-    coverage: 0.25,
-    layer: { topAltitude: 4600, weatherScale: 0.5, shapeScale: 0.7 },
+    coverage: 0.12,
+    layer: { topAltitude: 4400, density: 0.006, weatherScale: 0.6, shapeScale: 0.8 },
     azimuth: 350,
-    heading: 30,
-    pitch: 24,
+    heading: 60,
+    pitch: 20,
+    fall: { share: 0.9, streaks: 2 },
     place: { longitude: 20, latitude: 45 }
   },
   snow: {
@@ -138,7 +141,7 @@ export async function createRain(
     const { sun: elevation, rate, virgaDepth, freezingLevel, exposure } = current
     atmosphere.setSunAngles(elevation, view.azimuth)
     renderer.toneMappingExposure = 2 ** exposure
-    layer.precipitation = { rate, virgaDepth, freezingLevel }
+    layer.precipitation = { ...view.fall, rate, virgaDepth, freezingLevel }
   }
   apply()
 

@@ -66,9 +66,9 @@ export const Bow: Story = {
   args: { view: 'bow', sun: 12 }
 }
 
-/** Rain that evaporates below altocumulus at sunset: only the heaviest streaks reach far down. */
+/** Snow that evaporates below altocumulus in a low sun: tails that curve away with the wind, of which the heaviest reach far down. */
 export const Virga: Story = {
-  args: { view: 'virga', sun: 4, rate: 4, virgaDepth: 1200, freezingLevel: 0 }
+  args: { view: 'virga', sun: 6, rate: 4, virgaDepth: 3000, freezingLevel: 0 }
 }
 
 /** Snow that falls slowly, and so trails far behind its clouds. */

@@ -112,7 +112,7 @@ function rainInTheEast(
     layers: { first: int(0), last: int(1) },
     ceiling: medium.ceiling,
     width: float(1500),
-    shortest: float(1200)
+    shortest: float(150)
   }
   return async (
     rays,
@@ -139,8 +139,7 @@ function rainInTheEast(
       const ray = { direction, jitter: float(0.5) }
       const altitudes = { ceiling: medium.ceiling, floor: float(-1000) }
       const stretch = fallStretch(field, altitudes, { direction, end: reach })
-      const noClouds = { distances: vec4(1e6), shares: vec4(0) }
-      const seen = marchPrecipitation(context, space, ray, stretch, noClouds)
+      const seen = marchPrecipitation(context, space, ray, stretch)
       const { up, altitude } = field.view.localCoordinates(direction)
       const source = lightAt(context, { offset: direction, up, altitude, distance: float(1) })
       const phase = drops.phase({

@@ -1,6 +1,11 @@
 import { Atmosphere, aerialPerspective } from '@welkin/atmosphere'
 import { CloudLayers, CloudLightTable, CloudNoise, clouds } from '@welkin/clouds'
-import type { CloudLayerParameters, CloudQuality, CloudsNode } from '@welkin/clouds'
+import type {
+  CloudLayerParameters,
+  CloudQuality,
+  CloudsNode,
+  PrecipitationShafts
+} from '@welkin/clouds'
 import { PerspectiveCamera, Scene } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
@@ -72,14 +77,15 @@ export class CloudView {
     readonly renderer: WebGPURenderer,
     readonly atmosphere: Atmosphere,
     layers: CloudLayers,
-    { noise, light }: Partial<Shared>,
+    { noise, light, precipitation }: Partial<Shared> & { precipitation?: PrecipitationShafts },
     quality = coarse
   ) {
     const { camera, scene } = this
     this.#scenePass = pass(scene, camera, { samples: 0 })
     const depth = this.#scenePass.getTextureNode('depth')
     const air = aerialPerspective(this.#scenePass.getTextureNode(), depth, camera, atmosphere)
-    this.node = clouds(air, depth, camera, atmosphere, layers, { quality, noise, light })
+    const options = { quality, noise, light, precipitation }
+    this.node = clouds(air, depth, camera, atmosphere, layers, options)
     this.node.time = 0
     this.#pipeline = new RenderPipeline(renderer)
     this.#pipeline.outputColorTransform = false

@@ -273,8 +273,11 @@ export class WeatherMap {
     const distance = flat.length().toConst() as Float
     const inTile = flat.div(distance.add(EVEN)).mul(FALL_PER_POSITION).add(0.5)
     const at = inTile.add(vec2(1, float(index))).div(vec2(2, this.#field.layers.length))
-    const isIn = distance.lessThan(FALL_DISTANCE).select(1, 0)
-    return this.#map.sample(at).level(0).mul(isIn).toConst()
+    const found = this.#map.sample(at).level(0).toConst() as Vec4
+    return distance
+      .lessThan(FALL_DISTANCE)
+      .select(found, vec4(-1, 0, 0, 0))
+      .toConst()
   }
 
   /** Weather of whole regions at a displacement in the plane, from the map of it [m]. */

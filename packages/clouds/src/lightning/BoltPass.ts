@@ -15,22 +15,10 @@ import {
   Vector3,
   Vector4
 } from 'three'
-import {
-  bool,
-  Fn,
-  Discard,
-  If,
-  attribute,
-  screenUV,
-  texture,
-  varying,
-  vec2,
-  vec3,
-  vec4
-} from 'three/tsl'
+import { Fn, Discard, If, attribute, screenUV, texture, varying, vec2, vec3, vec4 } from 'three/tsl'
 import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
-import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
+import { isDrawnBefore } from '../march/tsl/viewRay'
 import type { Float, LevelTexture, Mat3, Mat4, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { matrix3, matrix4, number, vector3, vector4 } from '../uniforms'
 import { CHANNEL_COLOR, type PlacedChannel } from './channel'
@@ -143,7 +131,8 @@ export class BoltPass {
     const pixels = (p: Vec4): Vec2 => p.xy.div(p.w.max(1e-6)).mul(frame.size).mul(0.5).toConst()
     /** Place in pixels along and across the piece, its length in pixels, and the distance [m]. */
     const place = varying(vec4(0)) as unknown as Vec4 & { assign: (v: unknown) => void }
-    const brightness = varying(vec2(0)) as unknown as Vec2 & { assign: (v: unknown) => void }
+    /** Brightness, whether it is a branch, and z in view space. */
+    const brightness = varying(vec3(0)) as unknown as Vec3 & { assign: (v: unknown) => void }
     /** Light that air and clouds let through. */
     const air = varying(vec3(1)) as unknown as Vec3 & { assign: (v: unknown) => void }
     /** Share of light that clouds let through from a distance, at a place in pixels from the middle. */
@@ -193,12 +182,12 @@ export class BoltPass {
       const passing = vec2(passingAt(start, near), passingAt(stop, far)).toConst() as Vec2
       const isFirst = corner.x.lessThan(0.5)
       place.assign(vec4(at, across, length, isFirst.select(near, far)))
-      brightness.assign(vec2(from.w, to.w))
       const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
       const displacement = toView
         .mul(isFirst.select(from.xyz, to.xyz))
         .add(this.#placeView)
         .toConst()
+      brightness.assign(vec3(from.w, to.w, displacement.z))
       const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
       air.assign(transmittance.mul(isFirst.select(passing.x, passing.y)))
       // In front of the camera and not in clouds, or else nowhere.
@@ -211,10 +200,9 @@ export class BoltPass {
       const here = vec2(screenUV).mul(this.#crop.zw).add(this.#crop.xy).toConst() as Vec2
       const beside = place.x.sub(place.x.clamp(0, place.z)).toConst() as Float
       const square = beside.mul(beside).add(place.y.mul(place.y)).toConst() as Float
-      const ray = viewRayAt(viewRays, here)
       const distance = place.w.toConst() as Float
       // The channel is above the ground.
-      If(viewRayEnd(viewRays, here, ray, bool(true)).lessThan(distance.mul(0.999)), () => {
+      If(isDrawnBefore(viewRays, here, brightness.z.mul(0.999)), () => {
         Discard()
       })
       const width = distance.mul(field.pixelAngle).mul(WIDTH * Math.sqrt(2 * Math.PI))

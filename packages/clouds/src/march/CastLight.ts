@@ -7,7 +7,7 @@ import { componentAt } from '../density/tsl/componentAt'
 import { isNight } from '../light/tsl/night'
 import type { CloudCaster } from '../light/tsl/shadingContext'
 import { POINTS, type SeenPoints } from './tsl/seenPoints'
-import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
+import type { FallPlaces } from './tsl/fallOnRays'
 import { FARTHEST } from '../temporal/tsl/packing'
 import { loop, type Float, type LevelTexture, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { marchedPixel, type MarchedTargets } from './tsl/marchedPixel'
@@ -29,7 +29,7 @@ const parted = (both: Vec4): { value: Vec4; byte: Vec4 } => {
 /** Clouds of a camera, and their casters. */
 export interface CastScene {
   readonly viewRays: FrameInputs
-  readonly precipitation?: PrecipitationShafts
+  readonly precipitation?: FallPlaces
   readonly casters: ReadonlySet<CloudCaster>
 }
 

@@ -12,7 +12,8 @@ import { encodeDistance } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import { upscale } from '../temporal/tsl/upscale'
 import { CastLight, type CastScene } from './CastLight'
-import { FallPass } from './FallPass'
+import type { PrecipitationShafts } from '../precipitation/PrecipitationShafts'
+import type { FallPass } from './FallPass'
 import { withAerialPerspective } from './tsl/aerialPerspective'
 import { clearAir, packFound, unpackFound } from './tsl/clearAir'
 import { marchClouds } from './tsl/march'
@@ -30,7 +31,9 @@ export function sizeOf(renderer: Renderer): { width: number; height: number } {
 }
 
 /** Inputs of a camera's passes. */
-export interface CloudScene extends ShadingContext, CastScene {}
+export interface CloudScene extends ShadingContext, CastScene {
+  readonly precipitation?: PrecipitationShafts
+}
 
 /** @param isPacked - True if distances are bytes: see `pack`. */
 function cloudTarget(name: string, isPacked = false): RenderTarget {
@@ -92,9 +95,7 @@ function shadePixels(
     const here = uv() as unknown as Vec2
     const found = cast.pointsAt(here)
     const fallen = fall?.read(here)
-    const ray = fallen
-      ? vec4(encodeDistance(fallen.distance), fallen.end, fallen.transmittance, fallen.steps)
-      : cast.rayAt(here).ray
+    const ray = fallen?.ray ?? cast.rayAt(here).ray
     color.assign(vec4(0, 0, 0, 1))
     const { code, steps } = unpackFound(ray.w)
     distances.assign(vec4(ray.xy, code, steps))
@@ -158,7 +159,7 @@ export class CloudRenderer {
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
     this.seen = { distances, shares, ray }
     this.#cast = new CastLight(scene, this.seen)
-    this.#fall = precipitation && new FallPass(scene, precipitation, this.seen, this.#cast)
+    this.#fall = precipitation?.passOf(scene, this.seen, this.#cast)
     this.#shade = new FragmentPass(
       'Welkin.CloudsShade',
       shadePixels(scene, this.seen, this.#cast, this.#fall)
@@ -193,7 +194,7 @@ export class CloudRenderer {
     const down = Math.ceil(height / block)
     this.#marchedTarget.setSize(across, down)
     this.#cast.setSize(across, down)
-    this.#fall?.setSize(across, down)
+    this.#fall?.setSize(across, down, block)
     this.#shadedTarget.setSize(across, down)
     this.#cellsTarget.setSize(across + 1, down + 1)
     frame.size.value.set(width, height)

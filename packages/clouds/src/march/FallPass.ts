@@ -1,13 +1,14 @@
 import { FragmentPass, outputs, tableTarget, type Outputs } from '@welkin/atmosphere'
-import { FloatType, NearestFilter } from 'three'
-import { float, texture, uv, vec4 } from 'three/tsl'
+import { FloatType, NearestFilter, type RenderTarget } from 'three'
+import { float, If, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { ShadingContext } from '../light/tsl/shadingContext'
-import type { FallOnRay, PrecipitationShafts } from '../precipitation/PrecipitationShafts'
+import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { encodeDistance } from '../temporal/tsl/packing'
-import type { Float, LevelTexture, Vec2, Vec4 } from '../tsl-types'
-import type { CastLight } from './CastLight'
-import { marchedPixel, type MarchedTargets } from './tsl/marchedPixel'
+import type { Float, LevelTexture, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
+import { fallBlockOf } from './FrameUniforms'
+import type { FallOnRays, LitRays } from './tsl/fallOnRays'
+import type { MarchedTargets } from './tsl/marchedPixel'
 import { viewRayAt, type FrameInputs } from './tsl/viewRay'
 
 /** Inputs of the pass. */
@@ -15,91 +16,199 @@ export interface FallScene extends ShadingContext {
   readonly viewRays: FrameInputs
 }
 
-/** Precipitation on a marched ray, and the ray's log₂ of its end and part of its steps. */
-export interface FallOnPixel extends FallOnRay {
-  readonly end: Float
-  readonly steps: Float
+/** Precipitation before and behind the clouds of a pixel, and the ray of both. */
+export interface FallOnPixel {
+  /** Spectral radiance for unit irradiance of the bare sun [1/sr]. */
+  readonly radiance: Vec4
+  /** Share of the clouds' light that passes what falls before them. */
+  readonly before: Float
+  /** `MarchedTargets.ray` of clouds and of what falls. */
+  readonly ray: Vec4
 }
 
-/** Factor of a share in [0, 1] that is kept behind a whole number. */
+/** Factor of a share in [0, 1] that is kept behind a whole number, and of `packFound`'s numbers, which are of 11 bits. */
 const BEHIND = 0.5
+const FOUND = 2048
 
 /**
- * Precipitation on the rays of a frame, with its light: a pass between the march and the light of the clouds. In a shader with the clouds', fewer rays at
- * a time would be under way. What it writes stands in for the march's, so that the clouds' light samples no more textures with it than without.
+ * log₂ of ends over which a ray is left out that ends before the pixel's does, and the weight that is left: greater, and rain before a ridge
+ * shows beside it, too (*Valley, all day*).
+ */
+const SAME_END = [-0.3, -0.1] as const
+const LEAST_WEIGHT = 1e-3
+
+/** Corners of a cell between four rays. */
+const CORNERS = [
+  [0, 0],
+  [1, 0],
+  [0, 1],
+  [1, 1]
+] as const
+
+/**
+ * Precipitation on the rays of a frame, with its light: a pass between the march and the light of the clouds. It is softer than clouds are, and takes
+ * many steps: four marched pixels share a ray, which goes through each of them in turn, and pixels take what lies between the
+ * four rays around them. What falls is kept with its stretch of the ray, so that clouds and ground hide it at their own edges.
  */
 export class FallPass {
-  readonly #target = tableTarget('Welkin.CloudsFall', 1, 1, 2, NearestFilter)
-  readonly #pass: FragmentPass
-  readonly #fallen: readonly LevelTexture<Vec2>[]
+  readonly #frame: FrameInputs['frame']
+  readonly #target = fallTarget('Fall')
+  readonly #spreadTarget = fallTarget('FallSpread')
+  readonly #passes: readonly FragmentPass[]
+  readonly #spread: readonly LevelTexture<Vec2>[]
 
-  constructor(
-    scene: FallScene,
-    precipitation: PrecipitationShafts,
-    marched: MarchedTargets,
-    cast: CastLight
-  ) {
-    // Moonlit rain is a millionth of sunlit rain: too faint for half floats.
-    for (const each of this.#target.textures) each.type = FloatType
-    this.#fallen = this.#target.textures.map(each => texture(each) as unknown as LevelTexture<Vec2>)
-    this.#pass = new FragmentPass('Welkin.CloudsFall', draw(scene, precipitation, marched, cast))
+  constructor(scene: FallScene, precipitation: FallOnRays, marched: MarchedTargets, cast: LitRays) {
+    this.#frame = scene.viewRays.frame
+    const fallen = nodesOf(this.#target)
+    this.#spread = nodesOf(this.#spreadTarget)
+    // Ends and what `packFound` holds are too fine for half floats.
+    this.#spreadTarget.textures[1].type = FloatType
+    this.#passes = [
+      new FragmentPass('Welkin.CloudsFall', draw(scene, precipitation, marched, cast)),
+      new FragmentPass('Welkin.CloudsFallSpread', spread(scene, fallen, marched, cast))
+    ]
   }
 
-  /** Has the pass compiled anew where casters have changed. */
+  /** Has the passes compiled anew where casters have changed. */
   set version(version: string) {
-    const { material } = this.#pass
-    material.customProgramCacheKey = () => version
-    material.needsUpdate = true
+    for (const { material } of this.#passes) {
+      material.customProgramCacheKey = () => material.name + version
+      material.needsUpdate = true
+    }
   }
 
-  setSize(width: number, height: number): void {
-    this.#target.setSize(width, height)
+  /** @param block - Edge of the blocks of which a frame marches one pixel each. */
+  setSize(width: number, height: number, block: number): void {
+    const shared = fallBlockOf(block)
+    this.#target.setSize(Math.ceil(width / shared), Math.ceil(height / shared))
+    this.#spreadTarget.setSize(width, height)
   }
 
-  /** Draws the pass; the march and the casters' light go first. */
+  /** Draws the passes; the march and the casters' light go first. */
   render(renderer: Renderer): void {
-    this.#pass.render(renderer, this.#target)
+    const [draw, spread] = this.#passes
+    draw.render(renderer, this.#target)
+    spread.render(renderer, this.#spreadTarget)
   }
 
-  /** Precipitation on the ray of a pixel. To be called inside of a shader function. */
+  /** Precipitation before and behind the clouds of a pixel. To be called inside of a shader function. */
   read(here: Vec2): FallOnPixel {
-    const [radiance, ray] = this.#fallen.map(each => each.sample(here).level(0).toConst() as Vec4)
-    const steps = ray.w.floor().toConst() as Float
+    const [light, ray] = this.#spread.map(each => each.sample(here).level(0).toConst() as Vec4)
+    const found = ray.w.floor().toConst() as Float
     return {
-      radiance,
-      distance: ray.x.exp2().toConst(),
-      end: ray.y,
-      transmittance: ray.z,
-      steps: steps.div(2048).toConst(),
-      before: ray.w.sub(steps).div(BEHIND).toConst()
+      radiance: light.div(this.#frame.nightGain).toConst(),
+      before: ray.w.sub(found).div(BEHIND).toConst(),
+      ray: vec4(ray.xyz, found.div(FOUND)).toConst()
     }
   }
 
   /** Frees its textures. */
   dispose(): void {
-    this.#target.dispose()
-    this.#pass.dispose()
+    for (const each of [this.#target, this.#spreadTarget, ...this.#passes]) each.dispose()
   }
 }
 
+const fallTarget = (name: string): RenderTarget =>
+  tableTarget(`Welkin.Clouds${name}`, 1, 1, 2, NearestFilter)
+
+const nodesOf = ({ textures }: RenderTarget): LevelTexture<Vec2>[] =>
+  textures.map(each => texture(each) as unknown as LevelTexture<Vec2>)
+
+/** log₂ of where a ray ends: nothing is seen behind opaque clouds. */
+const endOf = (ray: Vec4, { x, y, z, w }: Vec4): Float =>
+  ray.z
+    .greaterThan(0)
+    .select(ray.y, encodeDistance(x.max(y).max(z.max(w))))
+    .toConst()
+
 function draw(
   scene: FallScene,
-  precipitation: PrecipitationShafts,
+  precipitation: FallOnRays,
   marched: MarchedTargets,
-  cast: CastLight
+  cast: LitRays
 ): Outputs {
-  const { viewRays } = scene
+  const { frame } = scene.viewRays
   return outputs<[Vec4, Vec4]>(2, ([radiance, fallen]) => {
-    const { at, noise } = marchedPixel(viewRays)
-    const here = uv() as unknown as Vec2
-    const { shares } = cast.pointsAt(here)
+    const { marchedSize, block, jitter, size, fallBlock, fallPixel, nightGain, noiseShift } = frame
+    const texel = uv().mul(marchedSize.div(fallBlock).ceil()).floor().toConst() as unknown as Vec2
+    const own = texel.mul(fallBlock).add(fallPixel).min(marchedSize.sub(1)).toConst() as Vec2
+    const here = own.add(0.5).div(marchedSize).toConst() as Vec2
+    const pixel = own.mul(block).add(jitter).min(size.sub(1))
+    const { direction } = viewRayAt(scene.viewRays, pixel.add(0.5).div(size).toConst())
     const { ray, litFall } = cast.rayAt(here)
-    const { direction } = viewRayAt(viewRays, at)
     const distances = marched.distances.sample(here).level(0).toConst() as Vec4
+    const noise = interleavedNoise(texel, noiseShift)
     const looked = { direction, jitter: noise, marched: ray, litFall }
-    const seen = precipitation.among(scene, looked, { distances, shares })
-    radiance.assign(seen.radiance)
-    const steps = float(ray.w.mul(2048).round()).add(seen.before.clamp().mul(BEHIND))
-    fallen.assign(vec4(encodeDistance(seen.distance), ray.y, seen.transmittance, steps))
+    const seen = precipitation.among(scene, looked, distances)
+    // Moonlit rain is a millionth of sunlit rain: too faint for half floats.
+    radiance.assign(seen.radiance.mul(nightGain))
+    const [middle, half, end] = [seen.distance, seen.half, seen.end].map(encodeDistance)
+    fallen.assign(vec4(seen.opacity, middle, half, end))
+  })
+}
+
+/** Spreads what rays have found over the pixels between them: before and behind each pixel's own clouds, up to its own end. */
+function spread(
+  { viewRays }: FallScene,
+  fallen: readonly LevelTexture<Vec2>[],
+  marched: MarchedTargets,
+  cast: LitRays
+): Outputs {
+  const { marchedSize, fallBlock, fallPixel } = viewRays.frame
+  return outputs<[Vec4, Vec4]>(2, ([radiance, seen]) => {
+    const here = uv() as unknown as Vec2
+    const size = marchedSize.div(fallBlock).ceil().toConst() as Vec2
+    const place = here.mul(marchedSize).floor().sub(fallPixel).div(fallBlock).toConst() as Vec2
+    const first = place.floor().toConst() as Vec2
+    const part = place.sub(first).toConst() as Vec2
+    const { ray } = cast.rayAt(here)
+    const { shares } = cast.pointsAt(here)
+    const distances = marched.distances.sample(here).level(0).toConst() as Vec4
+    const end = endOf(ray, distances)
+    const corners = CORNERS.map(([x, y]) => {
+      const index = first.add(vec2(x, y)).clamp(vec2(0), size.sub(1))
+      const at = index.add(0.5).div(size).toConst() as Vec2
+      const own = fallen[1].sample(at).level(0).toConst() as Vec4
+      const between = (x ? part.x : part.x.oneMinus()).mul(y ? part.y : part.y.oneMinus())
+      const fits = own.w
+        .sub(end)
+        .smoothstep(...SAME_END)
+        .add(LEAST_WEIGHT)
+      return { at, own, weight: between.mul(fits).toConst() }
+    })
+    const weights = corners.reduce<Float>((sum, { weight }) => sum.add(weight), float(0))
+    const most = corners.reduce<Float>((sum, { own }) => sum.max(own.x), float(0))
+    radiance.assign(vec4(0))
+    const found = ray.w.mul(FOUND).round().toConst() as Float
+    seen.assign(vec4(ray.xyz, found.add(BEHIND)))
+    If(most.greaterThan(0), () => {
+      /** Sums of opacity, and by that of its stretch. */
+      const sums = vec3(0).toVar() as Variable<Vec3>
+      const light = vec4(0).toVar() as Variable<Vec4>
+      for (const { at, own, weight } of corners) {
+        sums.addAssign(vec3(1, own.yz).mul(own.x.mul(weight)))
+        light.addAssign(fallen[0].sample(at).level(0).mul(weight))
+      }
+      const perWeight = weights.reciprocal().toConst() as Float
+      const opacity = sums.x.mul(perWeight).toConst() as Float
+      const [middle, half] = [sums.y, sums.z].map(
+        sum => sum.div(sums.x.max(1e-6)).exp2().toConst() as Float
+      )
+      /** Parts of it that lie before distances. */
+      const before = (distance: Vec4): Vec4 =>
+        distance.sub(middle).div(half.mul(2)).add(0.5).clamp().toConst()
+      const all = before(vec4(end.exp2())).x
+      const beforePoints = before(distances)
+      const hidden = shares.dot(vec4(all).sub(beforePoints).max(0))
+      const shown = all.sub(hidden).max(0).toConst() as Float
+      const ofClouds = shares.dot(beforePoints.mul(opacity).oneMinus()).toConst() as Float
+      const weight = opacity.mul(shown).toConst() as Float
+      const both = weight.add(ofClouds).max(1e-9)
+      const distance = middle.mul(weight).add(ray.x.exp2().mul(ofClouds)).div(both)
+      const through = opacity.mul(all).oneMinus().mul(ray.z)
+      const share = ofClouds.div(shares.dot(vec4(1)).max(1e-6)).clamp()
+      radiance.assign(light.mul(shown.mul(perWeight)))
+      seen.assign(vec4(encodeDistance(distance), ray.y, through, found.add(share.mul(BEHIND))))
+    })
   })
 }

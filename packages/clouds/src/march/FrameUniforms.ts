@@ -100,6 +100,9 @@ const cloudForms = ({ values }: CloudField): number[] =>
     i % LAYER_STRIDE < FORM_SLOTS ? formOf(vector, i % LAYER_STRIDE) : []
   )
 
+/** Marched pixels along an edge of those that share a ray through what falls: all have their own where all pixels are marched. */
+export const fallBlockOf = (block: number): number => (block === 1 ? 1 : 2)
+
 const _projection = new Matrix4()
 const _toPrevious = new Matrix4()
 const _delta = new Vector3()
@@ -122,6 +125,9 @@ export class FrameUniforms {
   readonly block = number(1)
   /** Pixel of the block that this frame marches [pixels]. */
   readonly jitter = vector2()
+  /** Marched pixels along an edge of those that share a ray through what falls, and the one of them that this frame's goes through. */
+  readonly fallBlock = number(1)
+  readonly fallPixel = vector2()
   /** Shift of the noise of steps, in [0, 1). */
   readonly noiseShift = number()
   readonly projectionInverse = matrix4()
@@ -150,8 +156,9 @@ export class FrameUniforms {
   readonly maxSamples = number(1)
   /** Half width of the variance clip [standard deviations]. */
   readonly clipDeviations = number(1)
-  /** Gain of stored light, and its ratio to the last frame's, by which history is multiplied. */
+  /** Gain of stored light, that of light which is not exposed yet, and the former's ratio to the last frame's, by which history is multiplied. */
   readonly gain = number(1)
+  readonly nightGain = number(1)
   readonly gainChange = number(1)
   /** Stored light per luminance of the last frame; 0 before the first. */
   #stored = 0
@@ -199,7 +206,8 @@ export class FrameUniforms {
     // An exposure that has adapted to the night raises light as well: both are too much for half floats.
     const { luminanceScale } = field.atmosphere
     const raised = Math.max(luminanceScale / DAYLIGHT_SCALE, 1)
-    const gain = Math.max(nightGain(view, field.radius.value) / raised, 1)
+    this.nightGain.value = nightGain(view, field.radius.value)
+    const gain = Math.max(this.nightGain.value / raised, 1)
     const stored = gain * luminanceScale
     this.gainChange.value = stored / (this.#stored || stored)
     this.gain.value = gain
@@ -236,10 +244,14 @@ export class FrameUniforms {
     const index = order[this.#count % order.length]
     this.jitter.value.set(index % block, Math.floor(index / block))
     this.block.value = block
+    this.fallBlock.value = fallBlockOf(block)
     // Low-discrepancy in a pixel's samples, which are whole rounds apart, and over the pixels of a block.
     const round = Math.floor(this.#count / order.length)
     const shift = round * GOLDEN_RATIO + index / order.length
     this.noiseShift.value = usesHistory ? shift % 1 : 0
+    const shared = ORDERS[this.fallBlock.value]
+    const own = shared[round % shared.length]
+    this.fallPixel.value.set(own & 1, own >> 1)
     this.#count++
   }
 

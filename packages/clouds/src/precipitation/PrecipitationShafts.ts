@@ -1,7 +1,7 @@
 import type { AtmosphereView, ScatteringPhase } from '@welkin/atmosphere'
 import { checkOptions, fail } from '@welkin/geo'
 import { MathUtils, Vector3, Vector4 } from 'three'
-import { If, int, mix, vec3, vec4 } from 'three/tsl'
+import { If, int, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../density/CloudField'
 import type { LayerNodes } from '../density/tsl/layer'
 import type { CloudSample } from '../density/tsl/sample'
@@ -11,7 +11,10 @@ import { layerPeriods } from '../layers/layerUniforms'
 import { meanColumnOf } from '../layers/meanColumn'
 import { windAxis } from '../layers/wind'
 import type { ShadingContext } from '../light/tsl/shadingContext'
-import { POINTS, type SeenPoints } from '../march/tsl/seenPoints'
+import { FallPass, type FallScene } from '../march/FallPass'
+import type { FallOnRay, LitRays } from '../march/tsl/fallOnRays'
+import type { MarchedTargets } from '../march/tsl/marchedPixel'
+import { POINTS } from '../march/tsl/seenPoints'
 import { GROWING_TOGETHER } from '../march/tsl/layerBoundaries'
 import type { DeckFallNodes } from '../environment/tsl/decks'
 import { vec4Array, type Float, type Int, type Variable, type Vec3, type Vec4 } from '../tsl-types'
@@ -32,18 +35,6 @@ export interface PrecipitationShaftsOptions {
   drops?: ScatteringPhase | null
 }
 
-/** Precipitation on a ray, and what the ray sees behind it. */
-export interface FallOnRay {
-  /** Spectral radiance for unit irradiance of the bare sun [1/sr]. */
-  readonly radiance: Vec4
-  /** Mean distance of clouds and of what falls, by what is seen of them [m]. */
-  readonly distance: Float
-  /** Share of light that passes both. */
-  readonly transmittance: Float
-  /** Share of the clouds' light that passes what falls before them. */
-  readonly before: Float
-}
-
 /** Vectors that a layer takes in the uniforms. */
 const STRIDE = 4
 
@@ -51,7 +42,7 @@ const STRIDE = 4
 const DECK_WIDTH = 1500
 
 /** Shortest mean length of steps of the march over the width of streaks [–], and at most [m]. Longer: virga has grain (*Virga*). */
-const STEP = 0.4
+const STEP = 0.2
 const LONGEST_STEP = 1200
 
 /** Altitude below all that is drawn, where nothing falls [m]. */
@@ -163,6 +154,11 @@ export class PrecipitationShafts {
     return this.#version + (this.drops?.version ?? 0)
   }
 
+  /** The pass that draws it, for the clouds of a node. */
+  passOf(scene: FallScene, marched: MarchedTargets, cast: LitRays): FallPass {
+    return new FallPass(scene, this, marched, cast)
+  }
+
   /** Altitude above which nothing falls; below 0 where nothing falls at all [m]. */
   get ceiling(): Float {
     return this.#ceiling
@@ -255,20 +251,20 @@ export class PrecipitationShafts {
   }
 
   /**
-   * Precipitation before and behind the clouds of a ray, with its light. To be called inside of a shader function.
+   * Precipitation on a ray, with its light. To be called inside of a shader function.
    *
    * @param ray - Its direction, noise in [0, 1), what was marched (log₂ of the clouds' distance and of its end, transmittance), and
    *   parts of the light that casters leave at {@link placesOn}, if there are any.
-   * @param points - Clouds on the ray.
+   * @param distances - Distances of the clouds' points [m].
    */
   among(
     context: ShadingContext,
     ray: { direction: Vec3; jitter: Float; marched: Vec4; litFall?: Vec4 },
-    points: SeenPoints
+    distances: Vec4
   ): FallOnRay {
     const { direction, marched, litFall } = ray
-    const { x: cloudDistance, z: transmittance } = marched
-    const stretch = this.#stretchOn(context.field, direction, marched, points.distances)
+    const stretch = this.#stretchOn(context.field, direction, marched, distances)
+    const { from, span } = stretch
     const space = {
       fallOf: (index: Int) => this.fallOf(index),
       layers: {
@@ -280,21 +276,16 @@ export class PrecipitationShafts {
       shortest: this.#shortest
     }
     const radiance = vec4(0).toVar() as Variable<Vec4>
-    const distance = cloudDistance.exp2().toVar() as Variable<Float>
-    const seen = marchPrecipitation(context, space, ray, stretch, points)
-    const { weight } = seen
-    const ofClouds = points.shares.dot(seen.before).toConst() as Float
+    const seen = marchPrecipitation(context, space, ray, stretch)
+    const { weight, distance } = seen
     If(weight.greaterThan(LEAST_SEEN), () => {
-      const lit = litFall && this.#litAt(stretch, litFall, seen.distance)
+      const lit = litFall && this.#litAt(stretch, litFall, distance)
       radiance.assign(lightPrecipitation(context, this.drops, direction, seen, this.#above, lit))
-      distance.assign(mix(seen.distance, distance, ofClouds.div(ofClouds.add(weight))))
     })
-    return {
-      radiance,
-      distance,
-      transmittance: transmittance.mul(seen.transmittance).toConst(),
-      before: ofClouds.div(points.shares.dot(vec4(1)).max(1e-6)).toConst()
-    }
+    // Nothing lies before the stretch or behind it.
+    const room = distance.sub(from).min(from.add(span).sub(distance)).max(1)
+    const half = seen.spread.mul(Math.sqrt(3)).clamp(1, room).toConst() as Float
+    return { radiance, opacity: weight, distance, half, end: stretch.end }
   }
 }
 

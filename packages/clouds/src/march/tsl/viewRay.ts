@@ -62,6 +62,14 @@ const viewZAt = (frame: FrameUniforms, uv: Vec2, depth: Float): Float =>
     )
   })()
 
+/** True where something was drawn before a z in view space [world units]. To be called inside of a shader function. */
+export function isDrawnBefore({ frame, depthAt }: FrameInputs, uv: Vec2, viewZ: Float): Bool {
+  const depth = depthAt(uv).toConst() as Float
+  return isBackgroundDepth(depth)
+    .not()
+    .and(viewZAt(frame, uv, depth).greaterThan(viewZ))
+}
+
 /**
  * Distance along a view ray to what was drawn, or to the ground; `FAR_AWAY` where there is neither [m]. To
  * be called inside of a shader function.

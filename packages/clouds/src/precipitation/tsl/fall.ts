@@ -18,7 +18,7 @@ export interface Fallen {
   readonly hail: Float
   /** Share of snow, in [0, 1]. */
   readonly snow: Float
-  /** Rank of the column above among those from which it falls, in (0, 1]; 0 where none does. */
+  /** Rank of the column above among those from which it falls, in (0, 1]; 0 or less where none does, down to −1 far from any. */
   readonly rank: Float
 }
 
@@ -155,7 +155,7 @@ function fallAlong(
   const column =
     map?.fallAt(layer.index, subpoint) ??
     fallColumn(field, layer, nodes, backgroundAt(field, layer, above), subpoint, footprint)
-  rank.assign(column.x.max(0))
+  rank.assign(column.x)
   If(rank.greaterThan(0), () => {
     const rise = layer.thickness.mul(fallForm.streakHeight).add(baseAltitude).sub(altitude)
     const source = offset.add(up.mul(rise)).toConst() as Vec3
@@ -189,7 +189,7 @@ export function fallenFrom(
 ): Fallen {
   const rate = float(0).toVar() as Variable<Float>
   const hail = float(0).toVar() as Variable<Float>
-  const rank = float(0).toVar() as Variable<Float>
+  const rank = float(-1).toVar() as Variable<Float>
   const { altitude, distance } = sample
   If(nodes.rate.greaterThan(0).and(altitude.lessThan(nodes.ceiling)), () => {
     const depth = layer.baseAltitude.sub(altitude).max(0).toConst() as Float

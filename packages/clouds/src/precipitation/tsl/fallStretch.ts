@@ -13,11 +13,15 @@ const FARTHEST = 150_000
 /** First steps over those of an even march [–], for rays that begin among shafts. */
 const FIRST = 0.12
 
-/** Stretch of a ray on which something falls, and the length of its first steps over those of an even march. */
+/**
+ * Stretch of a ray on which something falls, the length of its first places' distances over those of even ones, and where the ray ends if that is
+ * before what falls does; `FAR_AWAY` else [m].
+ */
 export interface FallStretch {
   readonly from: Float
   readonly span: Float
   readonly first: Float
+  readonly end: Float
 }
 
 /**
@@ -37,21 +41,22 @@ export function fallStretch(
   const isBelow = view.height.lessThan(floor).toConst()
   const from = shell.near.max(isBelow.select(under.far, 0)).toConst() as Float
   const isLeaving = isBelow.not().and(under.near.greaterThan(0))
-  const last = shell.far.min(end).min(isLeaving.select(under.near, FAR_AWAY))
+  const leaving = shell.far.min(isLeaving.select(under.near, FAR_AWAY))
+  const last = leaving.min(from.add(LONGEST)).toConst() as Float
   const isNear = from.lessThan(FARTHEST).select(1, 0)
-  const span = last.sub(from).min(LONGEST).mul(isNear).toConst() as Float
+  const span = last.min(end).sub(from).mul(isNear).toConst() as Float
   const first = mix(FIRST, 1, from.div(from.add(span.max(1)))).toConst() as Float
-  return { from, span, first }
+  return { from, span, first, end: end.lessThan(last).select(end, FAR_AWAY).toConst() }
 }
 
 /** Distance of a part of a stretch's steps, in [0, 1] [m]. */
 export const distanceAt = <T extends Float | Vec4>(
-  { from, span, first }: FallStretch,
+  { from, span, first }: Omit<FallStretch, 'end'>,
   part: T
 ): T => part.mul(part.mul(first.oneMinus()).add(first)).mul(span).add(from) as T
 
 /** The inverse of {@link distanceAt}. */
-export function partAt({ from, span, first }: FallStretch, distance: Float): Float {
+export function partAt({ from, span, first }: Omit<FallStretch, 'end'>, distance: Float): Float {
   const even = distance.sub(from).div(span.max(1)).clamp().toConst() as Float
   const root = first.mul(first).add(first.oneMinus().mul(even).mul(4)).sqrt()
   return even.mul(2).div(first.add(root))

@@ -1,7 +1,6 @@
 import { Break, If, float, vec2, vec3, vec4 } from 'three/tsl'
 import { forLayers, layerAt, type LayerRange } from '../../density/tsl/layer'
 import type { CloudSample } from '../../density/tsl/sample'
-import type { SeenPoints } from '../../march/tsl/seenPoints'
 import type { CloudRay } from '../../march/tsl/march'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
 import { LEAST_TRANSMITTANCE, lightAt } from '../../light/tsl/lighting'
@@ -18,17 +17,32 @@ import {
 import { DIFFRACTED } from '../fallForm'
 import { fallenFrom, fallExtinctions } from './fall'
 import type { FallNodes } from './fallColumn'
-import { distanceAt, type FallStretch } from './fallStretch'
+import type { FallStretch } from './fallStretch'
+
+/** Most steps of a ray over the quality's `layerSteps`. Fewer: the far end of rain is coarse (*Rain and snow*). */
+const STEPS = 2.5
+
+/** `layerSteps` for which steps are as long as streaks ask for: with fewer they are longer, by at most `COARSEST`, with more shorter. */
+const FINE_STEPS = 18
+const COARSEST = 2
+const FINEST = 0.25
+
+/** Length of a step over its distance from the camera, at least [–]. Greater: grain in far shafts (*Rain and snow*). */
+const GROWTH = 0.012
 
 /**
- * Groups of steps of a ray over the quality's `layerSteps`, and steps of a group. Light is found once for a group, where most of it is
- * seen. Fewer: grain in far shafts (*Rain and snow*).
+ * Lengths of steps where nothing falls, over those in what falls, and the rank of columns from which on they begin to shorten. Longer: edges
+ * of shafts have grain; shorter: rays take longer (*Rain and snow*).
  */
-const GROUPS = 0.2
-const GROUP = 3
+const LEAP = 4
+const NEAR_RANK = -0.2
 
-/** Fewest groups: rays to the ground nearby and up to the clouds are short. */
-const LEAST = 2
+/**
+ * Light is found where a part of the picture's light comes from a run of steps, after some steps, and at their end: once for all of them. Greater: shadows in
+ * shafts have grain (*Rain and snow*).
+ */
+const RUN_SEEN = 0.2
+const RUN_STEPS = 6
 
 /** Share of a step's length up to which the weather is blurred [–]. Greater: streaks vanish far away; smaller: grain there. */
 const BLUR = 0.04
@@ -38,13 +52,11 @@ export const LEAST_SEEN = 1e-4
 
 /** Precipitation on a ray. Depths count without what is only diffracted. */
 export interface SeenPrecipitation {
-  /** Share of light that passes all of it, and that from each point of the clouds; in [0, 1]. */
-  readonly transmittance: Float
-  readonly before: Vec4
-  /** Part of the picture's light that it scatters, and its means by that part: */
+  /** Part of the picture's light that it scatters: what does not pass. And its means by that part: */
   readonly weight: Float
-  /** distance [m], */
+  /** distance, and its deviation [m], */
   readonly distance: Float
+  readonly spread: Float
   /** rank of the columns above, in [0, 1], */
   readonly rank: Float
   /** scaled depth of clouds towards the light, */
@@ -64,51 +76,45 @@ export interface FallSpace {
   readonly ceiling: Float
   /** Way of level light through what falls [m]. */
   readonly width: Float
-  /** Shortest mean length of steps [m]. */
+  /** Length of steps that streaks ask for [m]. */
   readonly shortest: Float
 }
 
 /**
- * Marches a ray through what falls from the clouds, in even steps from afar and growing ones from within, which go in groups. To be
+ * Marches a ray through what falls from the clouds: in steps that follow the width of streaks where something falls, and in long ones elsewhere. To be
  * called inside of a shader function.
- *
- * @param points - Clouds on the ray.
  */
 export function marchPrecipitation(
   context: ShadingContext,
   { fallOf, layers, ceiling, width, shortest }: FallSpace,
   { direction, jitter }: Omit<CloudRay, 'end'>,
-  stretch: FallStretch,
-  points: SeenPoints
+  { from, span }: FallStretch
 ): SeenPrecipitation {
   const { field, weatherMap, light, shadows, quality } = context
   const { view } = field
-  const { span } = stretch
-  const groups = span
-    .div(shortest.mul(GROUP))
-    .clamp(LEAST, quality.layerSteps.mul(GROUPS))
-    .ceil()
-    .toConst() as Float
-  const count = groups.mul(GROUP).toConst() as Float
+  const most = quality.layerSteps.mul(STEPS).ceil().toConst() as Float
+  const finest = float(FINE_STEPS).div(quality.layerSteps).clamp(FINEST, COARSEST)
+  const least = shortest.mul(finest).toConst() as Float
+  const end = from.add(span).toConst() as Float
+  const start = from.toVar() as Variable<Float>
   const transmittance = float(1).toVar() as Variable<Float>
-  const before = vec4(1).toVar() as Variable<Vec4>
-  /** Weight, and sums by it: distance, rank, logarithm of the depth to the light. */
+  /** Length of the next step over that of a step in what falls, by the last one's rank. */
+  const leap = float(1).toVar() as Variable<Float>
+  /** Weight, and sums by it: distance, its square, logarithm of the depth to the light. */
   const sums = vec4(0).toVar() as Variable<Vec4>
-  /** Sums of light on drops and on flakes, and of the depth of precipitation to the light. */
+  /** Sums of light on drops and on flakes, of the depth of precipitation to the light, and of ranks. */
   const lights = vec4(0).toVar() as Variable<Vec4>
+  /** The present run: its weight, and sums by that of distances with noise, extinctions, and those of flakes; of ranks, and its steps. */
+  const run = vec4(0).toVar() as Variable<Vec4>
+  const others = vec2(0).toVar() as Variable<Vec2>
   const sampleAt = (at: Float, distance: Float): CloudSample => {
     const offset = direction.mul(at).toConst() as Vec3
     return { offset, ...view.localCoordinates(offset), distance }
   }
-  /**
-   * Adds what is seen of a group with its light.
-   *
-   * @param group - Its part, and sums by that of distances with noise, extinctions, and those of flakes.
-   * @param others - Sums of the middles of steps, and of ranks.
-   */
-  const addLight = (group: Vec4, others: Vec2): void => {
-    const seen = group.x.toConst() as Float
-    const [at, extinction, flaked] = [group.y, group.z, group.w].map(
+  /** Adds the light of the present run. */
+  const addLight = (): void => {
+    const seen = run.x.toConst() as Float
+    const [at, extinction, flaked] = [run.y, run.z, run.w].map(
       sum => sum.div(seen).toConst() as Float
     )
     const sample = sampleAt(at, at)
@@ -124,63 +130,71 @@ export function marchPrecipitation(
     const lit = clouds.add(own.mul(mapped.oneMinus())).negate().exp().mul(seen).toConst() as Float
     const flakes = flaked.div(extinction).toConst() as Float
     const ofClouds = clouds.sub(own.mul(mapped)).max(0)
-    sums.addAssign(vec4(seen, others, ofClouds.add(1).log().mul(seen)))
-    lights.addAssign(vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), 0))
+    sums.addAssign(vec4(0, 0, 0, ofClouds.add(1).log().mul(seen)))
+    lights.addAssign(vec4(lit.mul(flakes.oneMinus()), lit.mul(flakes), own.mul(seen), others.x))
   }
   If(span.greaterThan(1), () => {
-    loop('fallGroup', groups.toInt(), index => {
-      If(transmittance.lessThan(LEAST_TRANSMITTANCE), () => {
-        Break()
-      })
-      const group = vec4(0).toVar() as Variable<Vec4>
-      const others = vec2(0).toVar() as Variable<Vec2>
-      loop('fallStep', GROUP, step => {
-        const from = float(index).mul(GROUP).add(float(step)).toConst() as Float
-        const [start, next] = [from, from.add(1)].map(
-          place => distanceAt(stretch, place.div(count).toConst() as Float).toConst() as Float
-        )
-        const length = next.sub(start).toConst() as Float
-        const at = start.add(length.mul(jitter)).toConst() as Float
-        const sample = sampleAt(at, at.max(length.mul(BLUR).div(field.pixelAngle)).toConst())
-        /** Extinction, the same of flakes and stones, and of ranks. */
-        const found = vec3(0).toVar() as Variable<Vec3>
-        const visit = (layer: Int): void => {
-          const fallen = fallenFrom(field, weatherMap, layerAt(field, layer), fallOf(layer), sample)
+    loop('fallStep', most.toInt(), index => {
+      const left = end.sub(start).toConst() as Float
+      const part = float(index).add(1).div(most).toConst() as Float
+      const square = part.mul(part).toConst() as Float
+      // The last steps take all that is left.
+      const even = left.mul(square).mul(square).mul(square)
+      const length = least.max(start.mul(GROWTH)).max(even).mul(leap).min(left).toConst() as Float
+      const at = start.add(length.mul(jitter)).toConst() as Float
+      const sample = sampleAt(at, at.max(length.mul(BLUR).div(field.pixelAngle)).toConst())
+      /** Extinction, the same of flakes and stones, and of ranks. */
+      const found = vec3(0).toVar() as Variable<Vec3>
+      const near = float(-1).toVar() as Variable<Float>
+      const visit = (layer: Int): void => {
+        const fallen = fallenFrom(field, weatherMap, layerAt(field, layer), fallOf(layer), sample)
+        near.assign(near.max(fallen.rank))
+        If(fallen.rank.greaterThan(0), () => {
           const extinctions = fallExtinctions(fallen.rate, fallen.snow, fallen.hail).toConst()
           found.addAssign(vec3(extinctions, extinctions.x.mul(fallen.rank)))
-        }
-        forLayers(field, visit, layers)
-        If(found.x.greaterThan(0), () => {
-          const extinction = found.x.mul(1 - DIFFRACTED).toConst() as Float
-          const through = extinction.mul(length).negate().exp().toConst() as Float
-          // Clouds in front hide it.
-          const isBefore = vec4(at)
-            .sub(points.distances)
-            .div(points.distances.mul(0.1).max(50))
-            .add(0.5)
-            .clamp(0, 1)
-          const unhidden = points.shares.dot(isBefore).oneMinus().max(0)
-          const seen = transmittance.mul(unhidden).mul(through.oneMinus()).toConst() as Float
-          const flaked = found.y.mul(1 - DIFFRACTED)
-          group.addAssign(vec4(1, at, extinction, flaked).mul(seen))
-          others.addAssign(vec2(start.add(next).div(2), found.z.div(found.x)).mul(seen))
-          const ahead = points.distances.sub(start).clamp(0, length)
-          before.mulAssign(ahead.mul(extinction).negate().exp())
-          transmittance.mulAssign(through)
         })
+      }
+      forLayers(field, visit, layers)
+      If(found.x.greaterThan(0), () => {
+        const extinction = found.x.mul(1 - DIFFRACTED).toConst() as Float
+        const through = extinction.mul(length).negate().exp().toConst() as Float
+        const seen = transmittance.mul(through.oneMinus()).toConst() as Float
+        const flaked = found.y.mul(1 - DIFFRACTED)
+        const middle = start.add(length.div(2)).toConst() as Float
+        const distances = vec2(middle, middle.mul(middle).add(length.mul(length).div(12)))
+        sums.addAssign(vec4(1, distances, 0).mul(seen))
+        run.addAssign(vec4(1, at, extinction, flaked).mul(seen))
+        others.addAssign(vec2(found.z.div(found.x).mul(seen), 1))
+        transmittance.mulAssign(through)
       })
-      If(group.x.greaterThan(LEAST_SEEN), () => {
-        addLight(group, others)
+      start.addAssign(length)
+      const far = float(NEAR_RANK)
+        .sub(near)
+        .div(1 + NEAR_RANK)
+        .clamp()
+      leap.assign(far.mul(LEAP - 1).add(1))
+      const isDone = transmittance.lessThan(LEAST_TRANSMITTANCE).or(start.add(1).greaterThan(end))
+      const isEnd = isDone
+        .or(run.x.greaterThan(RUN_SEEN))
+        .or(others.y.greaterThan(RUN_STEPS - 0.5))
+        .or(near.lessThanEqual(0))
+      If(run.x.greaterThan(LEAST_SEEN).and(isEnd), () => {
+        addLight()
+        run.assign(vec4(0))
+        others.assign(vec2(0))
+      })
+      If(isDone, () => {
+        Break()
       })
     })
   })
   const weight = sums.x.max(1e-6).toConst() as Float
+  const distance = sums.y.div(weight).toConst() as Float
   return {
-    transmittance,
-    before,
     weight: sums.x,
-    distance: sums.y.div(weight).toConst(),
-    rank: sums.z.div(weight).toConst(),
+    distance,
+    spread: sums.z.div(weight).sub(distance.mul(distance)).max(0).sqrt().toConst(),
+    rank: lights.w.div(weight).toConst(),
     depthToLight: sums.w.div(weight).exp().sub(1).max(0).toConst(),
     ownDepth: lights.z.div(weight).toConst(),
     lit: vec2(lights.x, lights.y).toConst()

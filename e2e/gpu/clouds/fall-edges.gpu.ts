@@ -1,0 +1,77 @@
+import { CloudLayers, CloudLightTable, precipitationShafts } from '@welkin/clouds'
+import { BoxGeometry, Mesh, MeshBasicMaterial, Vector3 } from 'three'
+import { CloudView, coarse, fog, onGround, SparseNoise, viewSize } from '../harness/cloud-view'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import type { Picture } from '../harness/picture'
+
+/** A layer over the camera that is seen through, and from which it rains everywhere: 700 m on, one sees next to nothing else. */
+const layer = {
+  ...fog,
+  baseAltitude: 1500,
+  topAltitude: 1800,
+  density: 1e-7,
+  precipitation: { rate: 50, share: 1, freezingLevel: 9000 }
+}
+
+/** Distance of a black wall, whose end parts pixels that share a ray: next to no rain is before it [m]. */
+const WALL = 8
+
+/** Column of pixels in which it ends. */
+const EDGE = 15
+
+/** Frames in which each of the pixels that share a ray has had its own. */
+const FRAMES = 20
+
+gpuTest(
+  'rain whose rays pixels share ends where a wall before it does',
+  async t => {
+    const renderer = await t.createRenderer(viewSize)
+    const [light, noise, atmosphere] = [new CloudLightTable(), new SparseNoise(), onGround()]
+    // Next to no air: the sky behind is as dark as the wall.
+    const next = [1e-12, 1e-12, 1e-12, 1e-12] as const
+    atmosphere.parameters.set({
+      rayleighScattering: next,
+      mieScattering: [0, 0, 0, 0],
+      mieExtinction: next,
+      groundAlbedo: [0, 0, 0, 0]
+    })
+    /** Green in the picture: with rays of its own for each pixel, and shared by four marched ones of sixteen. */
+    const draw = async (block: 1 | 2): Promise<Picture> => {
+      const precipitation = precipitationShafts()
+      const shared = { noise, light, precipitation }
+      const quality = { ...coarse, layerSteps: 32, block }
+      const view = new CloudView(renderer, atmosphere, new CloudLayers([layer]), shared, quality)
+      const wall = new Mesh(new BoxGeometry(100, 200, 1), new MeshBasicMaterial({ color: 0 }))
+      wall.position.set(-48, 0, -WALL - 0.5)
+      view.scene.add(wall)
+      view.camera.position.y = 10
+      view.camera.lookAt(new Vector3(0, 0.4, -1).add(view.camera.position))
+      const picture = await view.draw(FRAMES)
+      view.dispose()
+      wall.geometry.dispose()
+      wall.material.dispose()
+      return picture
+    }
+    const [own, shared] = [await draw(1), await draw(2)]
+    const { width, height } = viewSize
+    const row = height / 2
+    const bright = own.at(width - 2, row)[1]
+    const dark = own.at(1, row)[1]
+    expectTrue(bright > 5 * dark, `rain ${bright}, before the wall ${dark}`)
+    let [most, where] = [0, '']
+    for (let y = 0; y < height; y++) {
+      for (let x = 0; x < width; x++) {
+        // Clouds' own picture is soft at edges, by a pixel.
+        if (x === EDGE) continue
+        const apart = Math.abs(shared.at(x, y)[1] - own.at(x, y)[1]) / bright
+        if (apart > most) [most, where] = [apart, `${x}, ${y}`]
+      }
+    }
+    t.note(`apart by at most ${(100 * most).toFixed(1)} % of rain's light, at ${where}`)
+    // With other weights of rays that end at the wall it is 0.62.
+    expectTrue(most < 0.4, `apart by ${most} at ${where}`)
+    for (const owned of [light, noise, atmosphere]) owned.dispose()
+  },
+  { backends: ['webgpu'] }
+)
