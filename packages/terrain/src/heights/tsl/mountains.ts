@@ -5,6 +5,8 @@ import { layout, loop, type Float, type Vec3, type Vec4 } from '../../tsl-types'
 import {
   BELT_RIDGES,
   CHAINS,
+  COASTAL,
+  COASTAL_RIDGES,
   CONTINENTS,
   CRAGS,
   CRAG_ROUGHENING,
@@ -199,9 +201,21 @@ export const mountains = (
     .toConst('mask')
   const rugged = lifted.xyz.mul(rise.mul(2).add(FOOTHILLS).mul(BELT_RIDGES))
   const turn = land.xyz.mul(edge).add(rugged).mul(ridges.w)
-  const mountain = vec4(ridges.xyz.mul(mask).add(turn), ridges.w.mul(mask))
-  return land
+  const mountain = vec4(ridges.xyz.mul(mask).add(turn), ridges.w.mul(mask)).mul(relief).toConst()
+  const level = land
     .mul(LAND_HEIGHT)
-    .add(mountain.add(lifted.mul(UPLIFT)).mul(relief))
+    .add(lifted.mul(relief.mul(UPLIFT)))
     .add(vec4(0, 0, 0, LAND_OFFSET))
+    .toConst('level')
+  const [low, high] = COASTAL
+  const inner = level.w
+    .sub(low)
+    .div(high - low)
+    .clamp(0, 1)
+    .toConst('inner')
+  const share = smoothstep(0, 1, inner).mul(1 - COASTAL_RIDGES).add(COASTAL_RIDGES)
+  const sharePerLevel = inner.mul(inner.oneMinus()).mul((6 * (1 - COASTAL_RIDGES)) / (high - low))
+  return level
+    .add(mountain.mul(share))
+    .add(vec4(level.xyz.mul(sharePerLevel).mul(mountain.w), 0))
 }
