@@ -268,25 +268,26 @@ export class Terrain extends SeaMesh {
     positionWorld.setFromMatrixPosition(camera.matrixWorld)
     positionECEF.copy(positionWorld).applyMatrix4(fromWorld)
     const ground = this.#heightAtSubpoint(figure.footPoint(positionECEF, subpoint))
-    const clearance = Math.max(figure.heightAt(positionECEF) - ground, LEAST_CLEARANCE)
+    const above = figure.heightAt(positionECEF) - ground
     const lowest = Math.max(source.lowest, this.seaLevel)
     const shadowDistance = this.castShadow ? this.#shadowDistance : 0
     const viewer = viewerOf(
       camera,
       positionECEF,
-      clearance,
+      Math.max(above, LEAST_CLEARANCE),
       lowest,
       fromWorld,
       figure,
       shadowDistance,
-      this.seaLevel
+      this.seaLevel,
+      above >= LEAST_CLEARANCE
     )
     this.#uniforms.update(viewer, ground, poleOf(this.atmosphere, pole))
     this.#tiles.update(renderer, viewer, most)
     const { tree, selection } = this.#tiles
     const isFine = selection.lag === 0
     this.#uniforms.skirt.value = isFine ? SHALLOW : 2 ** (selection.lag + 2)
-    this.#uniforms.ceiling.value = isFine ? NO_CEILING : ground + clearance / 2
+    this.#uniforms.ceiling.value = isFine ? NO_CEILING : ground + Math.max(above, LEAST_CLEARANCE) / 2
     this.#uniforms.referenceECEF(reference)
     this.maps?.update(renderer)
     this.mask?.update(figure, reference)

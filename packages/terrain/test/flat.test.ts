@@ -94,6 +94,7 @@ describe('tiles of a plane', () => {
       datumPoint: new Vector3(300, 20, -700),
       planes: [],
       seaLevel: -Infinity,
+      isOverGround: false,
       shadowDistance: 0,
       direction: new Vector3(0, 1, 0),
       occluder: 1,

@@ -184,12 +184,18 @@ export class HeightPages {
     tile.highest = Math.max(Math.min(most + margin, highest), most)
   }
 
+  #forget(owner: Tile): void {
+    owner.slot = -1
+    owner.heights = null
+  }
+
   #bake(tile: Tile, heights: Float32Array | null, slot: number): void {
     const owner = this.#owners[slot]
-    if (owner !== null) owner.slot = -1
+    if (owner !== null) this.#forget(owner)
     this.#owners[slot] = tile
     tile.slot = slot
     tile.fade = 1
+    tile.heights = null
     this.drawn++
     this.#baker.bake(this.#renderer!, tile, slot, heights)
   }
@@ -278,7 +284,7 @@ export class HeightPages {
     this.#flat.clear()
     this.#images?.clear()
     for (const [slot, owner] of this.#owners.entries()) {
-      if (owner !== null) owner.slot = -1
+      if (owner !== null) this.#forget(owner)
       this.#owners[slot] = null
     }
     this.drawn = 0

@@ -9,7 +9,8 @@ import { cubeToFigure, isFlat, type Figure } from '../tiles/cpu/figure'
 import type { Tile } from '../tiles/Tile'
 import { ellipsoidInShader, planeInShader } from '../tiles/tsl/figure'
 import type { PageAtlas } from './PageAtlas'
-import { PageQuads } from './PageQuads'
+import { HeightReadback } from './HeightReadback'
+import { MOST, PageQuads } from './PageQuads'
 import { isPageSource, type PageRequest, type PageSource } from './PageSource'
 import {
   heightsOf,
@@ -30,6 +31,9 @@ export const spacingOf = ({ extent }: Tile, { maximumRadius }: Figure, steps: nu
 /** Draws pages, many at once, in two passes. */
 export class PageBaker {
   readonly #quads: PageQuads
+  readonly #readback: HeightReadback
+  /** Tiles of the pages that wait. */
+  #waiting: Tile[] = []
   /** Heights that were loaded, of one page; null if they come from a function. */
   readonly #loaded: DataTexture | null = null
   /** Colours of one page, and the pass that draws them; null without pictures. */
@@ -68,6 +72,8 @@ export class PageBaker {
       quads.addPass('heights', heightsOf(source, tile, heightSide), heights)
       quads.addPass('surface', surfaceOf(source, tile, surfaceSide, density), surface)
     }
+    this.#readback = new HeightReadback(atlas, MOST)
+    quads.addPass('readback', this.#readback.output, this.#readback.target, true)
   }
 
   /** Heights to load for a tile. */
@@ -102,6 +108,7 @@ export class PageBaker {
     center.copy(tile.center).addScaledVector(reference, -REFERENCE_STEP)
     const shortest = 2 * spacingOf(tile, this.figure, this.resolution)
     this.#quads.add(tile, slot, reference, center, shortest)
+    this.#waiting.push(tile)
     if (this.#loaded !== null && heights !== null) {
       ;(this.#loaded.image.data as Float32Array).set(heights)
       this.#loaded.needsUpdate = true
@@ -109,9 +116,21 @@ export class PageBaker {
     } else if (this.#quads.isFull) this.flush(renderer)
   }
 
-  /** Draws the pages that wait. */
+  /** Draws the pages that wait; their tiles are told the heights some frames later. */
   flush(renderer: Renderer): void {
-    this.#quads.draw(renderer)
+    const count = this.#quads.draw(renderer)
+    if (count === 0) return
+    const pages = this.#waiting.map(tile => ({ tile, slot: tile.slot, page: ++tile.page }))
+    this.#waiting = []
+    this.#readback.read(renderer, count).then(
+      heights => {
+        for (const [n, { tile, slot, page }] of pages.entries()) {
+          if (slot >= 0 && tile.slot === slot && tile.page === page) tile.heights = heights[n]
+        }
+      },
+      // Without its heights a tile hides nothing.
+      () => undefined
+    )
   }
 
   /** Draws the colours of a page, as many as `request` asks heights for; the renderer is left as it was. */
@@ -127,6 +146,8 @@ export class PageBaker {
     this.#image?.pass.dispose()
     this.#image?.texture.dispose()
     this.#quads.dispose()
+    this.#readback.dispose()
+    this.#waiting = []
     this.#loaded?.dispose()
   }
 }

@@ -2,6 +2,7 @@ import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
 import type { Figure } from '../tiles/cpu/figure'
 import type { Viewer } from '../tiles/cpu/viewer'
+import { TerrainHorizon } from '../tiles/TerrainHorizon'
 import { noTiles, TileTree } from '../tiles/TileTree'
 import { HeightPages } from './HeightPages'
 import type { PageImages } from './PageImages'
@@ -26,6 +27,7 @@ const FINEST_CELL = 0.15
 export class PagedTiles {
   readonly tree: TileTree
   readonly pages: HeightPages
+  readonly #horizon: TerrainHorizon
   readonly selection = noTiles()
   /** Pages drawn in a frame. */
   pagesPerFrame = 1
@@ -54,6 +56,7 @@ export class PagedTiles {
     const finestLevel = Math.max(Math.ceil(Math.log2(cells)), 0)
     this.tree = new TileTree(figure, source, finestLevel, detail)
     this.pages = new HeightPages(source, figure, resolution, bytes, images)
+    this.#horizon = new TerrainHorizon(figure, resolution)
   }
 
   /**
@@ -83,6 +86,8 @@ export class PagedTiles {
     this.isFull = selection.lag === 0 && !pages.isFlat(tree.selections)
     const isStuck = left > 0 && drawn === 0 && selection.missing.length > 0 && pages.isStuck
     if (selection.lag === 0 || isStuck) this.#lastLag = selection.lag
+    // Ground is not drawn as its pages have it while some are missing.
+    if (this.isFull && viewer.isOverGround) this.#horizon.cull(selection, viewer)
   }
 
   /** Frees pages; the next update begins anew. */

@@ -117,7 +117,7 @@ export function groundSurface(
   const forest = mix(meadow, floor, tone.mul(0.2).add(0.85).clamp(0, 1))
   const desert = color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony)
   // Turf of sedges and lichen lies between the stones, most of it just above the trees.
-  const turfed = smoothstep(-0.25, 0.45, patch.sub(overTrees.mul(1 / 1200)).add(stone.mul(-0.5)))
+  const turfed = smoothstep(-0.45, 0.3, patch.sub(overTrees.mul(1 / 2500)).add(stone.mul(-0.5)))
   const stones = color(SCREE).mul(tone.mul(0.6).add(1).clamp(0.4, 1.3))
   const scree = mix(stones, color(TUNDRA), turfed.mul(0.75)).mul(stony)
   const tangle = blade.add(boulder.mul(0.3)).toConst('tangle') as Float

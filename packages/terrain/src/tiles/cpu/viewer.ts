@@ -13,6 +13,8 @@ export interface Viewer {
   readonly datumPoint: Vector3
   /** Sides of the view, relative to the position. */
   readonly planes: readonly Plane[]
+  /** True of a viewer who looks from a point over the ground: one below it, or with parallel lines of sight, sees what ground hides from others. */
+  readonly isOverGround: boolean
   /** Surface of the sea [m]; −Infinity for none. */
   readonly seaLevel: number
   /** Distance within which tiles out of view may cast shadows into it [m]; 0 for none. */
@@ -42,7 +44,7 @@ const subpoint = new Vector3()
  * @param clearance - Height above the ground [m], > 0.
  * @param lowest - Lower bound of all ground [m].
  * @param worldToECEF - Rotation and scale of the world, translation ignored.
- * @param shadowDistance - See {@link Viewer}, like `seaLevel`.
+ * @param shadowDistance - See {@link Viewer}, like `seaLevel` and `isOverGround`.
  */
 export function viewerOf(
   camera: Camera,
@@ -52,7 +54,8 @@ export function viewerOf(
   worldToECEF: Matrix4,
   figure: Figure,
   shadowDistance: number,
-  seaLevel = -Infinity
+  seaLevel = -Infinity,
+  isOverGround = false
 ): Viewer {
   figure.footPoint(positionECEF, subpoint)
   const up = figure.surfaceNormal(positionECEF)
@@ -71,6 +74,7 @@ export function viewerOf(
     datumPoint: subpoint.clone().addScaledVector(up, clearance),
     // Left, right, top and bottom: near and far depend on the kind of depth.
     planes: frustum.planes.slice(0, 4).map(plane => plane.clone()),
+    isOverGround: isOverGround && !(camera as { isOrthographicCamera?: boolean }).isOrthographicCamera,
     seaLevel,
     shadowDistance,
     direction: direction.divideScalar(radius),
