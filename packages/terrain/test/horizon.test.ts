@@ -131,7 +131,10 @@ it('leaves out only tiles that nobody sees', () => {
     hidden += left.length
     for (const [n, tile] of left.entries()) {
       const { first, second } = faceAxes(tile.face)
-      const [x, y] = [tile.x + tile.extent * (((n * 7) % 5) / 2 - 1), tile.y + tile.extent * (((n * 3) % 5) / 2 - 1)]
+      const [x, y] = [
+        tile.x + tile.extent * (((n * 7) % 5) / 2 - 1),
+        tile.y + tile.extent * (((n * 3) % 5) / 2 - 1)
+      ]
       for (const morph of [0, 1] as const) {
         const { outward } = faceAxes(tile.face)
         const cube = outward.addScaledVector(first, x).addScaledVector(second, y)

@@ -165,7 +165,9 @@ export class TerrainHorizon {
       addLine(middle, i, 0, 1)
     }
     const ends = [0, resolution]
-    const corners = ends.flatMap(row => ends.map(column => this.#pointOf(tile, column, row, highest)))
+    const corners = ends.flatMap(row =>
+      ends.map(column => this.#pointOf(tile, column, row, highest))
+    )
     return { own, parent, seaLevel, lines: new Float64Array(lines), corners }
   }
 

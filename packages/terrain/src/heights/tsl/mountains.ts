@@ -213,9 +213,9 @@ export const mountains = (
     .div(high - low)
     .clamp(0, 1)
     .toConst('inner')
-  const share = smoothstep(0, 1, inner).mul(1 - COASTAL_RIDGES).add(COASTAL_RIDGES)
+  const share = smoothstep(0, 1, inner)
+    .mul(1 - COASTAL_RIDGES)
+    .add(COASTAL_RIDGES)
   const sharePerLevel = inner.mul(inner.oneMinus()).mul((6 * (1 - COASTAL_RIDGES)) / (high - low))
-  return level
-    .add(mountain.mul(share))
-    .add(vec4(level.xyz.mul(sharePerLevel).mul(mountain.w), 0))
+  return level.add(mountain.mul(share)).add(vec4(level.xyz.mul(sharePerLevel).mul(mountain.w), 0))
 }

@@ -74,8 +74,7 @@ export function groundShares(place: PlaceOnCPU): SharesOnCPU {
   const steepness = 1 - cosSlope + ROCK_PATCH * patch
   const lowland = 1 - smoothstep(overSea, ...LOWLAND)
   const wooded = SLOPE_WOODS * smoothstep(1 - cosSlope, ...SLOPES)
-  const moisture =
-    patch + wooded - dryness - DRY_WOODS * climate - OPEN - LOWLAND_DRYNESS * lowland
+  const moisture = patch + wooded - dryness - DRY_WOODS * climate - OPEN - LOWLAND_DRYNESS * lowland
   const layers = {
     snow:
       smoothstep(overSnow + SNOW_PATCH * patch, ...SNOW_OVER) *

@@ -186,7 +186,7 @@ export function groundSurface(
  * @param shared - Values that several of them need.
  */
 const layered = (layers: GroundLayers, colors: GroundColors, shared: Float[]): Vec3 =>
-  (globalThis as any).LAB?.col === 0 ? old(layers, colors) : Fn(() => {
+  Fn(() => {
     for (const value of [...Object.values(layers), ...shared]) {
       ;(value as unknown as { toStack(): void }).toStack()
     }
@@ -208,10 +208,3 @@ const layered = (layers: GroundLayers, colors: GroundColors, shared: Float[]): V
     made.assign(mix(made, colors.snow, snow))
     return made
   })()
-
-function old(layers: GroundLayers, colors: GroundColors): Vec3 {
-  const { snow, bare, inland, bareness, dryness, woods } = layers
-  const soil = mix(mix(colors.grass, colors.forest, woods), colors.desert, dryness)
-  const land = mix(colors.sand, mix(soil, colors.scree, bareness), inland)
-  return mix(mix(land, colors.rock, bare), colors.snow, snow)
-}

@@ -74,7 +74,8 @@ export function viewerOf(
     datumPoint: subpoint.clone().addScaledVector(up, clearance),
     // Left, right, top and bottom: near and far depend on the kind of depth.
     planes: frustum.planes.slice(0, 4).map(plane => plane.clone()),
-    isOverGround: isOverGround && !(camera as { isOrthographicCamera?: boolean }).isOrthographicCamera,
+    isOverGround:
+      isOverGround && !(camera as { isOrthographicCamera?: boolean }).isOrthographicCamera,
     seaLevel,
     shadowDistance,
     direction: direction.divideScalar(radius),

@@ -1,6 +1,7 @@
 import {
   Fn,
   attribute,
+  float,
   ivec2,
   mix,
   positionGeometry,
@@ -107,12 +108,20 @@ export function tileVertex(
   const inParent = quarterOf(quarter).mul(resolution).toConst()
   const vertexAt = (slot: Float, cell: Vec2): Vec3 =>
     load(heights.texture, firstTexel(slot, columns, heightSide).add(cell)).toConst()
+  const odd = cells.sub(even).toConst() as Vec2
   // Between two vertices that stay: on the grid's diagonal if it is odd both ways.
-  const [fine, before, after] = [cells, even, cells.mul(2).sub(even)].map(cell =>
-    vertexAt(own, cell)
-  )
-  const bend = fine.x.sub(before.x.add(after.x).mul(0.5)).abs()
-  const flatness = smoothstep(FLAT[0] * ((globalThis as any).LAB?.snap ?? 1), FLAT[1] * ((globalThis as any).LAB?.snap ?? 1), bend.div(distance)).oneMinus().toConst('flatness') as Float
+  const [fine, before, after] = [cells, even, cells.add(odd)].map(cell => vertexAt(own, cell))
+  // The globe bends, too: by the sagitta over two cells, or over their diagonal.
+  const cell = extent
+    .mul(radii.x)
+    .mul(2 / resolution)
+    .toConst() as Float
+  const sagitta = figure.isFlat ? float(0) : cell.mul(cell).div(radii.x.mul(2)).mul(odd.dot(odd))
+  const [middle, left, right] = [fine, before, after].map(({ x }) => x.max(seaLevel))
+  const bend = middle.sub(left.add(right).mul(0.5)).add(sagitta).abs()
+  const flatness = smoothstep(...FLAT, bend.div(distance))
+    .oneMinus()
+    .toConst('flatness') as Float
   const mixed = mix(
     mix(fine, before, flatness),
     vertexAt(parent, even.add(inParent).mul(0.5)),
@@ -124,7 +133,6 @@ export function tileVertex(
   const outwards = step(vec2(resolution - 0.5), cells).sub(step(cells, vec2(0.5)))
   const delta = alongCube(moved.add(outwards.mul(skirtShare.mul(SKIRT_WIDTH))))
   const subpoint = fromCenter(delta)
-  const cell = extent.mul(radii.x).mul(2 / resolution)
   // Vertices of the triangle under the viewer are within three cells, morphed or not.
   const room = distance.sub(cell.mul(CLOSE)).max(0)
   const height = mixed.x.min(ceiling.add(room)).max(seaLevel)
