@@ -287,9 +287,7 @@ export class Terrain extends SeaMesh {
     const { tree, selection } = this.#tiles
     const isFine = selection.lag === 0
     this.#uniforms.skirt.value = isFine ? SHALLOW : 2 ** (selection.lag + 2)
-    this.#uniforms.ceiling.value = isFine
-      ? NO_CEILING
-      : ground + Math.max(above, LEAST_CLEARANCE) / 2
+    this.#uniforms.ceiling.value = isFine ? NO_CEILING : ground + viewer.clearance / 2
     this.#uniforms.referenceECEF(reference)
     this.maps?.update(renderer)
     this.mask?.update(figure, reference)

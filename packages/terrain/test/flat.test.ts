@@ -95,6 +95,7 @@ describe('tiles of a plane', () => {
       planes: [],
       seaLevel: -Infinity,
       isOverGround: false,
+      clearance: 1,
       shadowDistance: 0,
       direction: new Vector3(0, 1, 0),
       occluder: 1,

@@ -124,7 +124,7 @@ export class PageQuads {
   /**
    * Draws the pages that were added; the renderer is left as it was.
    *
-   * @returns How many they were.
+   * @returns Number of pages drawn.
    */
   draw(renderer: Renderer): number {
     const count = this.#count

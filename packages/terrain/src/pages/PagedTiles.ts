@@ -86,8 +86,7 @@ export class PagedTiles {
     this.isFull = selection.lag === 0 && !pages.isFlat(tree.selections)
     const isStuck = left > 0 && drawn === 0 && selection.missing.length > 0 && pages.isStuck
     if (selection.lag === 0 || isStuck) this.#lastLag = selection.lag
-    // Ground is not drawn as its pages have it while some are missing.
-    if (this.isFull && viewer.isOverGround) this.#horizon.cull(selection, viewer)
+    if (viewer.isOverGround) this.#horizon.cull(selection, viewer)
   }
 
   /** Frees pages; the next update begins anew. */

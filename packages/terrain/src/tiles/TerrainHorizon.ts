@@ -21,6 +21,9 @@ const MARGIN = 2e-4
 /** Choices of tiles to pass over after one in which nothing was hidden: a viewer high up sees all. */
 const REST = 15
 
+/** While pages are missing, ground near the viewer is drawn under a ceiling: steepest lines of sight that it leaves alone [–], from so many heights of the viewer on. */
+const UNDER_CEILING = { slope: 0.5, from: 4 }
+
 /** Ground of a tile as it may be drawn. ECEF axes [m]. */
 interface Relief {
   readonly own: Float32Array
@@ -92,12 +95,15 @@ export class TerrainHorizon {
     const known = inView.flatMap(tile => this.#seen(tile, viewer) ?? [])
     const before = known.toSorted((a, b) => a.far - b.far)
     const hidden = new Set<Tile>()
+    const isFine = selection.lag === 0
+    const most = isFine ? Infinity : UNDER_CEILING.slope
     let next = 0
     for (const seen of known.toSorted((a, b) => a.near - b.near)) {
       for (; next < before.length && before[next].far <= seen.near; next++) {
-        const { tile, relief } = before[next]
+        const { tile, relief, near } = before[next]
         // What is under the horizon does not raise it.
-        if (!hidden.has(tile)) this.#raise(relief, viewer)
+        const isSure = isFine || near > Math.max(UNDER_CEILING.from * viewer.clearance, tile.radius)
+        if (isSure && !hidden.has(tile)) this.#raise(relief, viewer, most)
       }
       if (this.#isHidden(seen, viewer)) hidden.add(seen.tile)
     }
@@ -172,7 +178,7 @@ export class TerrainHorizon {
   }
 
   /** Raises the horizon to a tile's ground. Thousands of lines in a frame: in plain numbers. */
-  #raise({ lines }: Relief, { position }: Viewer): void {
+  #raise({ lines }: Relief, { position }: Viewer, most: number): void {
     const slopes = this.#slopes
     const { x: eastX, y: eastY } = east
     const { x: northX, y: northY, z: northZ } = north
@@ -194,7 +200,7 @@ export class TerrainHorizon {
       }
       const length = turn(start, azimuth)
       if (Math.abs(length) > LONGEST) continue
-      if (slope < lowest) lowest = slope
+      lowest = Math.min(lowest, slope, most)
       // A line below the eye is farther down in its middle than at its ends.
       lowest -= 0.35 * length * length * Math.abs(lowest)
       const from = Math.min(start, start + length) / BIN

@@ -11,6 +11,8 @@ export interface Viewer {
    * ground, so that they are of the same kind on a mountain and at sea.
    */
   readonly datumPoint: Vector3
+  /** Height above the ground [m]. */
+  readonly clearance: number
   /** Sides of the view, relative to the position. */
   readonly planes: readonly Plane[]
   /** True of a viewer who looks from a point over the ground: one below it, or with parallel lines of sight, sees what ground hides from others. */
@@ -72,6 +74,7 @@ export function viewerOf(
   return {
     position: positionECEF.clone(),
     datumPoint: subpoint.clone().addScaledVector(up, clearance),
+    clearance,
     // Left, right, top and bottom: near and far depend on the kind of depth.
     planes: frustum.planes.slice(0, 4).map(plane => plane.clone()),
     isOverGround:
