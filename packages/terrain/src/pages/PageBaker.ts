@@ -9,7 +9,8 @@ import { cubeToFigure, isFlat, type Figure } from '../tiles/cpu/figure'
 import type { Tile } from '../tiles/Tile'
 import { ellipsoidInShader, planeInShader } from '../tiles/tsl/figure'
 import type { PageAtlas } from './PageAtlas'
-import { HeightReadback } from './HeightReadback'
+import type { TerrainHorizon } from '../tiles/TerrainHorizon'
+import type { HeightReadback } from './HeightReadback'
 import { MOST, PageQuads } from './PageQuads'
 import { isPageSource, type PageRequest, type PageSource } from './PageSource'
 import {
@@ -31,7 +32,8 @@ export const spacingOf = ({ extent }: Tile, { maximumRadius }: Figure, steps: nu
 /** Draws pages, many at once, in two passes. */
 export class PageBaker {
   readonly #quads: PageQuads
-  readonly #readback: HeightReadback
+  /** Way of heights to the CPU; null if nobody asks for them. */
+  readonly #readback: HeightReadback | null
   /** Tiles of the pages that wait. */
   #waiting: Tile[] = []
   /** Heights that were loaded, of one page; null if they come from a function. */
@@ -44,7 +46,8 @@ export class PageBaker {
     readonly figure: Figure,
     readonly atlas: PageAtlas,
     /** Cells along a tile's edge. */
-    readonly resolution: number
+    readonly resolution: number,
+    horizon: TerrainHorizon | null = null
   ) {
     const { heights, surface, heightSide, surfaceSide, density } = atlas
     const quads = (this.#quads = new PageQuads(atlas))
@@ -72,8 +75,8 @@ export class PageBaker {
       quads.addPass('heights', heightsOf(source, tile, heightSide), heights)
       quads.addPass('surface', surfaceOf(source, tile, surfaceSide, density), surface)
     }
-    this.#readback = new HeightReadback(atlas, MOST)
-    quads.addPass('readback', this.#readback.output, this.#readback.target, true)
+    const readback = (this.#readback = horizon?.readback(atlas, MOST) ?? null)
+    if (readback !== null) quads.addPass('readback', readback.output, readback.target, true)
   }
 
   /** Heights to load for a tile. */
@@ -108,7 +111,7 @@ export class PageBaker {
     center.copy(tile.center).addScaledVector(reference, -REFERENCE_STEP)
     const shortest = 2 * spacingOf(tile, this.figure, this.resolution)
     this.#quads.add(tile, slot, reference, center, shortest)
-    this.#waiting.push(tile)
+    if (this.#readback !== null) this.#waiting.push(tile)
     if (this.#loaded !== null && heights !== null) {
       ;(this.#loaded.image.data as Float32Array).set(heights)
       this.#loaded.needsUpdate = true
@@ -116,10 +119,10 @@ export class PageBaker {
     } else if (this.#quads.isFull) this.flush(renderer)
   }
 
-  /** Draws the pages that wait; their tiles are told the heights some frames later. */
+  /** Draws the pages that wait; for a horizon their tiles are told the heights some frames later. */
   flush(renderer: Renderer): void {
     const count = this.#quads.draw(renderer)
-    if (count === 0) return
+    if (count === 0 || this.#readback === null) return
     const pages = this.#waiting.map(tile => ({ tile, slot: tile.slot, page: ++tile.page }))
     this.#waiting = []
     this.#readback.read(renderer, count).then(
@@ -146,7 +149,7 @@ export class PageBaker {
     this.#image?.pass.dispose()
     this.#image?.texture.dispose()
     this.#quads.dispose()
-    this.#readback.dispose()
+    this.#readback?.dispose()
     this.#waiting = []
     this.#loaded?.dispose()
   }

@@ -1,4 +1,6 @@
 import { Vector3 } from 'three'
+import { HeightReadback } from '../pages/HeightReadback'
+import type { PageAtlas } from '../pages/PageAtlas'
 import type { TileSelection } from './TileTree'
 import type { Tile } from './Tile'
 import { faceAxes } from './cpu/cubeSphere'
@@ -18,6 +20,12 @@ const LONGEST = 0.5
 /** Slope of a line of sight over the horizon from which on ground counts as hidden: a fifth of a pixel at 1080 lines [–]. */
 const MARGIN = 2e-4
 
+/** Distance from which on tiles hide others and are hidden, in heights of the viewer above the ground. Less: hardly more is hidden, for twice the time. */
+const NEAREST = 30
+
+/** Height of a viewer above the ground up to which it is looked for what is hidden [m]. */
+const HIGHEST = 2e4
+
 /** Choices of tiles to pass over after one in which nothing was hidden: a viewer high up sees all. */
 const REST = 15
 
@@ -31,8 +39,8 @@ interface Relief {
   readonly seaLevel: number
   /** Lines along its middle row and column, on the ground, or below it: x, y and z of both ends of each. */
   readonly lines: Float64Array
-  /** Corners, on the highest of its ground. */
-  readonly corners: readonly Vector3[]
+  /** Corners, as high as the highest of its ground. */
+  readonly corners: Float64Array
 }
 
 /** A tile as the viewer sees it. */
@@ -45,6 +53,7 @@ interface Seen {
 }
 
 const place = new Vector3()
+const normal = new Vector3()
 const up = new Vector3()
 const east = new Vector3()
 const north = new Vector3()
@@ -64,41 +73,73 @@ function turn(from: number, to: number): number {
 }
 
 /**
- * Horizon that ground makes about a viewer, by which tiles behind it are left out.
+ * Takes tiles out of view.
+ *
+ * @param isKept - True if they go behind those in view, for they may cast shadows into it.
+ */
+function leaveOut(selection: TileSelection, hidden: ReadonlySet<Tile>, isKept: boolean): void {
+  const { tiles, inView } = selection
+  const unseen = tiles.splice(inView)
+  let count = 0
+  for (const tile of tiles) if (!hidden.has(tile)) tiles[count++] = tile
+  tiles.length = selection.inView = count
+  if (isKept) tiles.push(...hidden)
+  tiles.push(...unseen)
+}
+
+/**
+ * Horizon that ground makes about a viewer, by which a terrain leaves out tiles behind it:
+ *
+ * ```ts
+ * const terrain = new Terrain(atmosphere, heights, { horizon: new TerrainHorizon() })
+ * ```
  *
  * Tiles are gone through from near to far. Lines across those that lie wholly before a tile are on the ground as it is drawn, or below it, whatever
- * share of its parent's page it is drawn with: what is seen under them is hidden.
+ * share of its parent's page it is drawn with: what is seen under them is hidden. Their heights come back from the GPU.
  */
 export class TerrainHorizon {
+  readonly isTerrainHorizon = true
   /** Slope of the line of sight to the horizon, by azimuth [–]. */
   readonly #slopes = new Float64Array(BINS)
   readonly #reliefs = new WeakMap<Tile, Relief>()
   /** Choices of tiles for which it is not looked whether anything is hidden. */
   #rest = 0
 
-  /** @param resolution - Cells along a tile's edge. */
-  constructor(
-    readonly figure: Figure,
-    readonly resolution: number
-  ) {}
+  #figure!: Figure
+  #resolution = 0
 
-  /** Moves tiles in view that others hide behind those that are seen: they may cast shadows still. */
-  cull(selection: TileSelection, viewer: Viewer): void {
-    if (--this.#rest > 0) return
+  /** Way of the heights of a terrain's pages to the CPU. */
+  readback(atlas: PageAtlas, rows: number): HeightReadback {
+    return new HeightReadback(atlas, rows)
+  }
+
+  /**
+   * Takes tiles out of view that others hide: behind the others if there are shadows, into which they may cast theirs.
+   *
+   * @param resolution - Cells along a tile's edge.
+   */
+  cull(selection: TileSelection, viewer: Viewer, figure: Figure, resolution: number): void {
+    if (viewer.clearance > HIGHEST || --this.#rest > 0) return
+    this.#figure = figure
+    this.#resolution = resolution
     this.#slopes.fill(-Infinity)
-    this.figure.surfaceNormal(viewer.position, up)
+    this.#figure.surfaceNormal(viewer.position, up)
     east.set(-up.y, up.x, 0)
     if (east.lengthSq() < 1e-6) east.set(1, 0, 0)
     east.normalize()
     north.crossVectors(up, east)
-    const inView = selection.tiles.slice(0, selection.inView)
-    const known = inView.flatMap(tile => this.#seen(tile, viewer) ?? [])
+    const known: Seen[] = []
+    for (let i = 0; i < selection.inView; i++) {
+      const seen = this.#seen(selection.tiles[i], viewer)
+      if (seen !== null) known.push(seen)
+    }
     const before = known.toSorted((a, b) => a.far - b.far)
     const hidden = new Set<Tile>()
     const isFine = selection.lag === 0
     const most = isFine ? Infinity : UNDER_CEILING.slope
     let next = 0
-    for (const seen of known.toSorted((a, b) => a.near - b.near)) {
+    // Tiles in view are sorted by distance, and so by `near`.
+    for (const seen of known) {
       for (; next < before.length && before[next].far <= seen.near; next++) {
         const { tile, relief, near } = before[next]
         // What is under the horizon does not raise it.
@@ -107,45 +148,42 @@ export class TerrainHorizon {
       }
       if (this.#isHidden(seen, viewer)) hidden.add(seen.tile)
     }
-    if (hidden.size === 0) {
-      this.#rest = REST
-      return
-    }
-    const visible = inView.filter(tile => !hidden.has(tile))
-    selection.inView = visible.length
-    for (const [i, tile] of [...visible, ...hidden].entries()) selection.tiles[i] = tile
+    if (hidden.size === 0) this.#rest = REST
+    else leaveOut(selection, hidden, viewer.shadowDistance > 0)
   }
 
-  #seen(tile: Tile, { position, seaLevel }: Viewer): Seen | null {
-    if (tile.level < COARSEST || !tile.heights || !tile.parent?.heights) return null
+  #seen(tile: Tile, { position, clearance, seaLevel }: Viewer): Seen | null {
+    const { heights, parent, level, distance, center, radius } = tile
+    if (distance < NEAREST * clearance) return null
+    if (level < COARSEST || heights === null || !parent?.heights) return null
     let relief = this.#reliefs.get(tile)
     const isNew =
-      relief?.own !== tile.heights ||
-      relief.parent !== tile.parent.heights ||
-      relief.seaLevel !== seaLevel
+      relief?.own !== heights || relief.parent !== parent.heights || relief.seaLevel !== seaLevel
     if (relief === undefined || isNew) {
-      relief = this.#reliefOf(tile, tile.heights, tile.parent.heights, seaLevel)
+      relief = this.#reliefOf(tile, heights, parent.heights, seaLevel)
       this.#reliefs.set(tile, relief)
     }
-    place.copy(tile.center).sub(position)
-    const distance = Math.hypot(place.dot(east), place.dot(north))
-    // Heights lean outwards, by far less than this.
-    const radius = 1.05 * tile.radius
-    return { tile, relief, near: distance - radius, far: distance + radius }
-  }
-
-  /** Point of a tile at a height. */
-  #pointOf({ face, cube, extent }: Tile, column: number, row: number, height: number): Vector3 {
-    const { first, second } = faceAxes(face)
-    const along = (cell: number): number => ((2 * cell) / this.resolution - 1) * extent
-    const point = cube.clone().addScaledVector(first, along(column))
-    cubeToFigure(point.addScaledVector(second, along(row)), this.figure, point)
-    return point.addScaledVector(this.figure.surfaceNormal(point), height)
+    place.copy(center).sub(position)
+    const [x, y] = [place.dot(east), place.dot(north)]
+    // Heights lean outwards, and the globe bends, by far less than these.
+    const far = Math.sqrt(x * x + y * y) + 1.05 * radius
+    const below = clearance + (distance * distance) / (2 * this.#figure.minimumRadius)
+    const near = 0.99 * Math.sqrt(Math.max(distance * distance - below * below, 0))
+    return { tile, relief, near, far }
   }
 
   #reliefOf(tile: Tile, own: Float32Array, parent: Float32Array, seaLevel: number): Relief {
-    const { resolution } = this
+    const resolution = this.#resolution
     const side = resolution + 1
+    const { first, second } = faceAxes(tile.face)
+    /** Writes a point of the tile at a height. */
+    const put = (target: Float64Array, n: number, x: number, y: number, height: number): void => {
+      place.copy(tile.cube)
+      place.addScaledVector(first, ((2 * x) / resolution - 1) * tile.extent)
+      place.addScaledVector(second, ((2 * y) / resolution - 1) * tile.extent)
+      cubeToFigure(place, this.#figure, place)
+      place.addScaledVector(this.#figure.surfaceNormal(place, normal), height).toArray(target, n)
+    }
     const [left, top] = [tile.quarter % 2, tile.quarter >> 1].map(half => (half * resolution) / 2)
     const ownAt = (column: number, row: number): number => own[row * side + column]
     const parentAt = (column: number, row: number): number =>
@@ -159,22 +197,25 @@ export class TerrainHorizon {
       }
     }
     const middle = 2 * Math.floor(resolution / 4)
-    const lines: number[] = []
+    const lines = new Float64Array(6 * resolution)
+    let n = 0
     const addLine = (x: number, y: number, dx: number, dy: number): void => {
       const [endX, endY] = [x + 2 * dx, y + 2 * dy]
       const before = Math.min(ownAt(x, y), parentAt(x, y), ownAt(x + dx, y + dy))
       const height = Math.max(Math.min(before, ownAt(endX, endY), parentAt(endX, endY)), seaLevel)
-      lines.push(...this.#pointOf(tile, x, y, height), ...this.#pointOf(tile, endX, endY, height))
+      put(lines, n, x, y, height)
+      put(lines, n + 3, endX, endY, height)
+      n += 6
     }
     for (let i = 0; i < resolution; i += 2) {
       addLine(i, middle, 1, 0)
       addLine(middle, i, 0, 1)
     }
-    const ends = [0, resolution]
-    const corners = ends.flatMap(row =>
-      ends.map(column => this.#pointOf(tile, column, row, highest))
-    )
-    return { own, parent, seaLevel, lines: new Float64Array(lines), corners }
+    const corners = new Float64Array(12)
+    for (let i = 0; i < 4; i++) {
+      put(corners, 3 * i, (i % 2) * resolution, (i >> 1) * resolution, highest)
+    }
+    return { own, parent, seaLevel, lines, corners }
   }
 
   /** Raises the horizon to a tile's ground. Thousands of lines in a frame: in plain numbers. */
@@ -217,8 +258,8 @@ export class TerrainHorizon {
     place.copy(tile.center).sub(position)
     const middle = quarterTurns(place.dot(east), place.dot(north))
     let [first, last, highest] = [0, 0, -Infinity]
-    for (const corner of relief.corners) {
-      place.copy(corner).sub(position)
+    for (let n = 0; n < 12; n += 3) {
+      place.fromArray(relief.corners, n).sub(position)
       const aside = turn(middle, quarterTurns(place.dot(east), place.dot(north)))
       first = Math.min(first, aside)
       last = Math.max(last, aside)
@@ -226,7 +267,7 @@ export class TerrainHorizon {
     }
     if (last - first > 2 * LONGEST) return false
     // The ground rises over its corners by its sagitta.
-    highest += tile.radius ** 2 / this.figure.minimumRadius
+    highest += tile.radius ** 2 / this.#figure.minimumRadius
     const slope = highest / (highest > 0 ? near : far) + MARGIN
     const end = Math.ceil((middle + last) / BIN) + 1
     for (let bin = Math.floor((middle + first) / BIN) - 1; bin < end; bin++) {
