@@ -125,7 +125,7 @@ export function groundSurface(
   const washed = overSea.add(tuft.mul(0.25)).add(patch.mul(0.5)).toConst()
   const strand = smoothstep(0.6, 0.9, washed).mul(smoothstep(1.1, 1.5, washed).oneMinus())
   const seaweed = strand.mul(smoothstep(0.02, 0.25, tangle)).mul(0.85)
-  const dunes = color(SAND).mul(stone.mul(0.14).add(boulder.mul(0.12)).add(patch.mul(0.35)).add(1))
+  const dunes = color(SAND).mul(stone.mul(0.1).add(patch.mul(0.35)).add(1))
   const sand = mix(dunes, color(SEAWEED), seaweed)
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
   const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
