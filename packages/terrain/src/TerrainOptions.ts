@@ -93,7 +93,7 @@ export function checkFixed(
     fail(where, 'maps must be GroundMaps or null', maps)
   if (mask !== null && !Array.isArray(mask?.materials))
     fail(where, 'mask must be a GroundMask or null', mask)
-  if (horizon !== null && horizon?.isTerrainHorizon !== true)
+  if (horizon !== null && typeof horizon?.cull !== 'function')
     fail(where, 'horizon must be a TerrainHorizon or null', horizon)
   if (imagery === null) return
   const isImagery =

@@ -98,7 +98,6 @@ function leaveOut(selection: TileSelection, hidden: ReadonlySet<Tile>, isKept: b
  * share of its parent's page it is drawn with: what is seen under them is hidden. Their heights come back from the GPU.
  */
 export class TerrainHorizon {
-  readonly isTerrainHorizon = true
   /** Slope of the line of sight to the horizon, by azimuth [–]. */
   readonly #slopes = new Float64Array(BINS)
   readonly #reliefs = new WeakMap<Tile, Relief>()
