@@ -22,7 +22,7 @@ export interface TerrainOptions {
   maps?: GroundMaps | null
   /** Picture of what the ground consists of; null, the default, where height, slope and latitude tell. */
   mask?: GroundMask | null
-  /** Leaves out what ground hides, `new TerrainHorizon()`: fewer triangles among mountains, for a third of a millisecond of the CPU; null, the default, for none. */
+  /** Leaves out what ground hides, `new TerrainHorizon()`: fewer triangles among mountains, for half a millisecond of the CPU; null, the default, for none. */
   horizon?: TerrainHorizon | null
   /** Surface of the sea above the ellipsoid, default 0 [m]; −Infinity for none. */
   seaLevel?: number

@@ -127,7 +127,7 @@ export function groundSurface(
   const seaweed = strand.mul(smoothstep(0.02, 0.25, tangle)).mul(0.85)
   const dunes = color(SAND).mul(stone.mul(0.1).add(patch.mul(0.35)).add(1))
   const sand = mix(dunes, color(SEAWEED), seaweed)
-  const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
+  const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.06))).toConst('wet')
   const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
   const mapped = maps === null ? null : maps.groundAt(place, layers, colors)
   const made =
