@@ -1,6 +1,7 @@
 import { FloatType, NearestFilter, RenderTarget, RGBAFormat } from 'three'
 import { Fn, attribute, float, ivec2, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
+import type { Tile } from '../tiles/Tile'
 import type { Float, Vec4 } from '../tsl-types'
 import type { PageAtlas } from './PageAtlas'
 
@@ -13,6 +14,8 @@ export class HeightReadback {
   /** Four heights of a page. */
   readonly output: Vec4
   readonly #count: number
+  /** Tiles of the pages that wait. */
+  #tiles: Tile[] = []
 
   /** @param rows - Most pages of a drawing. */
   constructor(
@@ -43,30 +46,36 @@ export class HeightReadback {
     })()
   }
 
-  /**
-   * Heights of pages that were drawn last, rows of vertices first.
-   *
-   * @param count - Number of pages.
-   */
-  async read(renderer: Renderer, count: number): Promise<Float32Array[]> {
+  /** Adds a tile whose page is in the next drawing. */
+  add(tile: Tile): void {
+    this.#tiles.push(tile)
+  }
+
+  /** Tells the tiles that were added the heights of their pages, which were drawn last, once they have come. */
+  read(renderer: Renderer): void {
+    const count = this.#tiles.length
+    if (count === 0) return
+    const pages = this.#tiles.map(tile => ({ tile, slot: tile.slot, page: ++tile.page }))
+    this.#tiles = []
     const { width } = this.target
     // Rows count from the top on WebGPU, from the bottom on WebGL2.
     const isTopDown = (renderer.backend as { isWebGPUBackend?: boolean }).isWebGPUBackend === true
     const start = isTopDown ? 0 : this.rows - count
-    const data = (await renderer.readRenderTargetPixelsAsync(
-      this.target,
-      0,
-      start,
-      width,
-      count
-    )) as Float32Array
-    return Array.from({ length: count }, (_, n) => {
-      const row = 4 * width * (isTopDown ? n : count - 1 - n)
-      return data.slice(row, row + this.#count)
-    })
+    renderer.readRenderTargetPixelsAsync(this.target, 0, start, width, count).then(
+      data => {
+        for (const [n, { tile, slot, page }] of pages.entries()) {
+          if (slot < 0 || tile.slot !== slot || tile.page !== page) continue
+          const row = 4 * width * (isTopDown ? n : count - 1 - n)
+          tile.heights = (data as Float32Array).slice(row, row + this.#count)
+        }
+      },
+      // Without its heights a tile hides nothing.
+      () => undefined
+    )
   }
 
   dispose(): void {
+    this.#tiles = []
     this.target.dispose()
   }
 }

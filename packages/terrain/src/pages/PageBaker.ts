@@ -34,8 +34,6 @@ export class PageBaker {
   readonly #quads: PageQuads
   /** Way of heights to the CPU; null if nobody asks for them. */
   readonly #readback: HeightReadback | null
-  /** Tiles of the pages that wait. */
-  #waiting: Tile[] = []
   /** Heights that were loaded, of one page; null if they come from a function. */
   readonly #loaded: DataTexture | null = null
   /** Colours of one page, and the pass that draws them; null without pictures. */
@@ -111,7 +109,7 @@ export class PageBaker {
     center.copy(tile.center).addScaledVector(reference, -REFERENCE_STEP)
     const shortest = 2 * spacingOf(tile, this.figure, this.resolution)
     this.#quads.add(tile, slot, reference, center, shortest)
-    if (this.#readback !== null) this.#waiting.push(tile)
+    this.#readback?.add(tile)
     if (this.#loaded !== null && heights !== null) {
       ;(this.#loaded.image.data as Float32Array).set(heights)
       this.#loaded.needsUpdate = true
@@ -121,19 +119,8 @@ export class PageBaker {
 
   /** Draws the pages that wait; for a horizon their tiles are told the heights some frames later. */
   flush(renderer: Renderer): void {
-    const count = this.#quads.draw(renderer)
-    if (count === 0 || this.#readback === null) return
-    const pages = this.#waiting.map(tile => ({ tile, slot: tile.slot, page: ++tile.page }))
-    this.#waiting = []
-    this.#readback.read(renderer, count).then(
-      heights => {
-        for (const [n, { tile, slot, page }] of pages.entries()) {
-          if (slot >= 0 && tile.slot === slot && tile.page === page) tile.heights = heights[n]
-        }
-      },
-      // Without its heights a tile hides nothing.
-      () => undefined
-    )
+    this.#quads.draw(renderer)
+    this.#readback?.read(renderer)
   }
 
   /** Draws the colours of a page, as many as `request` asks heights for; the renderer is left as it was. */
@@ -150,7 +137,6 @@ export class PageBaker {
     this.#image?.texture.dispose()
     this.#quads.dispose()
     this.#readback?.dispose()
-    this.#waiting = []
     this.#loaded?.dispose()
   }
 }

@@ -121,14 +121,9 @@ export class PageQuads {
     slots[n + 2] = row
   }
 
-  /**
-   * Draws the pages that were added; the renderer is left as it was.
-   *
-   * @returns Number of pages drawn.
-   */
-  draw(renderer: Renderer): number {
-    const count = this.#count
-    if (count === 0) return 0
+  /** Draws the pages that were added; the renderer is left as it was. */
+  draw(renderer: Renderer): void {
+    if (this.#count === 0) return
     this.#geometry.instanceCount = this.#count
     for (const values of this.#attributes) values.needsUpdate = true
     this.#count = 0
@@ -142,7 +137,6 @@ export class PageQuads {
       renderer.render(mesh, this.#camera)
     }
     RendererUtils.restoreRendererState(renderer, state)
-    return count
   }
 
   dispose(): void {

@@ -22,7 +22,6 @@ const DARK_ROCK = [0.105, 0.098, 0.092]
 const SCREE = [0.238, 0.228, 0.21]
 const TUNDRA = [0.095, 0.088, 0.05]
 const SAND = [0.4, 0.32, 0.215]
-const SEAWEED = [0.03, 0.026, 0.013]
 const DESERT = [0.39, 0.265, 0.15]
 const GRASS = [0.066, 0.1, 0.03]
 const SOIL = [0.052, 0.04, 0.027]
@@ -121,12 +120,7 @@ export function groundSurface(
   const stones = color(SCREE).mul(tone.mul(0.6).add(1).clamp(0.4, 1.3))
   const scree = mix(stones, color(TUNDRA), turfed.mul(0.75)).mul(stony)
   const tangle = blade.add(boulder.mul(0.3)).toConst('tangle') as Float
-  // What high water left lies in strands, a metre above the sea.
-  const washed = overSea.add(tuft.mul(0.25)).add(patch.mul(0.5)).toConst()
-  const strand = smoothstep(0.6, 0.9, washed).mul(smoothstep(1.1, 1.5, washed).oneMinus())
-  const seaweed = strand.mul(smoothstep(0.02, 0.25, tangle)).mul(0.85)
-  const dunes = color(SAND).mul(stone.mul(0.1).add(patch.mul(0.35)).add(1))
-  const sand = mix(dunes, color(SEAWEED), seaweed)
+  const sand = color(SAND).mul(stone.mul(0.1).add(patch.mul(0.35)).add(1))
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.06))).toConst('wet')
   const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
   const mapped = maps === null ? null : maps.groundAt(place, layers, colors)
