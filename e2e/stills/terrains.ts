@@ -40,10 +40,11 @@ export const terrains: TerrainStill[] = (
     ],
     ['scree', 'stones between meadow and rock', [0.508, 46.65, 1.7], [275, -12]],
     ['snow', 'snow and rock about a summit', [0.428, 47.372, 1.7], [200, -8]],
-    ['shore', 'sand, wet where the sea begins', [2.1411, 46.19, 1.7], [350, -8]],
+    ['shore', 'sand, wet where the sea begins', [1.6848, 46.15, 1.7], [45, -8]],
     ['1km', 'slopes, valleys and cliffs in low sun', [0.494, 46.35, 2e3], [338, -12]],
     ['10km', 'ranges without shimmer or grid', [0.45, 46.9, 1e4], [0, -12]],
     ['400km', 'a mountainous coast from orbit: woods, steppe, no net', [1, 44.5, 4e5], [0, -25]],
+    ['down', 'the same coast, seen more from above', [0.5, 45.5, 4e5], [20, -60]],
     ['glint', 'the sun in the sea from orbit: wide, with calm patches', [1, 44.5, 4e5], [315, -30]]
   ] as const
 ).map(([name, about, [longitude, latitude, height], [heading, pitch]]) => ({

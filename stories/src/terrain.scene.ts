@@ -29,10 +29,10 @@ export const VIEWS = {
   },
   shore: {
     label: 'Shore, 30 m',
-    longitude: 2.1411,
-    latitude: 46.19,
+    longitude: 1.6848,
+    latitude: 46.15,
     height: 30,
-    heading: 350,
+    heading: 45,
     pitch: 2
   },
   summit: {

@@ -92,11 +92,12 @@ export class Terrain extends SeaMesh {
     checkAtmosphere('Terrain', atmosphere)
     checkSource('Terrain', source)
     const all = withDefaults('Terrain', DEFAULTS, options)
-    const { resolution, detail, pageMemory, imagery, maps, mask, ...settings } = all
+    const { resolution, detail, pageMemory, imagery, maps, mask, horizon, ...settings } = all
     checkFixed('Terrain', all)
     const figure = figureOf(atmosphere)
     const uniforms = new TerrainUniforms(figure)
-    const tiles = new PagedTiles(source, figure, resolution, detail, 1e6 * pageMemory, imagery)
+    const bytes = 1e6 * pageMemory
+    const tiles = new PagedTiles(source, figure, resolution, detail, bytes, imagery, horizon)
     const grain = grainTexture()
     const material = terrainMaterial(
       atmosphere,
@@ -263,30 +264,29 @@ export class Terrain extends SeaMesh {
     if (figureOf(this.atmosphere) !== figure) {
       fail('Terrain', 'atmosphere must stay flat or round, as it was at first')
     }
-    const { source } = this
     const fromWorld = worldToGround(this.atmosphere)
     positionWorld.setFromMatrixPosition(camera.matrixWorld)
     positionECEF.copy(positionWorld).applyMatrix4(fromWorld)
     const ground = this.#heightAtSubpoint(figure.footPoint(positionECEF, subpoint))
-    const clearance = Math.max(figure.heightAt(positionECEF) - ground, LEAST_CLEARANCE)
-    const lowest = Math.max(source.lowest, this.seaLevel)
+    const above = figure.heightAt(positionECEF) - ground
     const shadowDistance = this.castShadow ? this.#shadowDistance : 0
     const viewer = viewerOf(
       camera,
       positionECEF,
-      clearance,
-      lowest,
+      Math.max(above, LEAST_CLEARANCE),
+      Math.max(this.source.lowest, this.seaLevel),
       fromWorld,
       figure,
       shadowDistance,
-      this.seaLevel
+      this.seaLevel,
+      above >= LEAST_CLEARANCE
     )
     this.#uniforms.update(viewer, ground, poleOf(this.atmosphere, pole))
     this.#tiles.update(renderer, viewer, most)
     const { tree, selection } = this.#tiles
     const isFine = selection.lag === 0
     this.#uniforms.skirt.value = isFine ? SHALLOW : 2 ** (selection.lag + 2)
-    this.#uniforms.ceiling.value = isFine ? NO_CEILING : ground + clearance / 2
+    this.#uniforms.ceiling.value = isFine ? NO_CEILING : ground + viewer.clearance / 2
     this.#uniforms.referenceECEF(reference)
     this.maps?.update(renderer)
     this.mask?.update(figure, reference)

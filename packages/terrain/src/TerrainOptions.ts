@@ -5,6 +5,7 @@ import type { HeightSource } from './heights/HeightSource'
 import type { PageImages } from './pages/PageImages'
 import type { GroundMaps } from './surface/maps/GroundMaps'
 import type { GroundMask } from './surface/maps/GroundMask'
+import type { TerrainHorizon } from './tiles/TerrainHorizon'
 import { isPageSource, type PageSource } from './pages/PageSource'
 
 /** Options of `Terrain`. */
@@ -21,6 +22,8 @@ export interface TerrainOptions {
   maps?: GroundMaps | null
   /** Picture of what the ground consists of; null, the default, where height, slope and latitude tell. */
   mask?: GroundMask | null
+  /** Leaves out what ground hides, `new TerrainHorizon()`: fewer triangles among mountains, for half a millisecond of the CPU; null, the default, for none. */
+  horizon?: TerrainHorizon | null
   /** Surface of the sea above the ellipsoid, default 0 [m]; −Infinity for none. */
   seaLevel?: number
   /** Wind over the sea, in [0, 40], default 7 [m/s]: more of it has steeper waves, and a wider glint of the sun. */
@@ -56,6 +59,7 @@ export const DEFAULTS: Required<TerrainOptions> = {
   imageAlbedo: 1,
   maps: null,
   mask: null,
+  horizon: null,
   seaLevel: 0,
   windSpeed: 7,
   waveTime: 0,
@@ -79,7 +83,7 @@ export function checkSource(where: string, source: HeightSource | PageSource): v
 /** @throws If an option that cannot change later is out of its range. */
 export function checkFixed(
   where: string,
-  { resolution, detail, pageMemory, imagery, maps, mask }: Required<TerrainOptions>
+  { resolution, detail, pageMemory, imagery, maps, mask, horizon }: Required<TerrainOptions>
 ): void {
   checkRange(where, 'resolution', resolution, 4, 128)
   if (resolution % 2 !== 0) fail(where, 'resolution must be even', resolution)
@@ -89,6 +93,8 @@ export function checkFixed(
     fail(where, 'maps must be GroundMaps or null', maps)
   if (mask !== null && !Array.isArray(mask?.materials))
     fail(where, 'mask must be a GroundMask or null', mask)
+  if (horizon !== null && typeof horizon?.cull !== 'function')
+    fail(where, 'horizon must be a TerrainHorizon or null', horizon)
   if (imagery === null) return
   const isImagery =
     typeof imagery?.imageOf === 'function' && typeof imagery.loadImage === 'function'

@@ -1,5 +1,6 @@
 export { Terrain } from './Terrain'
 export type { TerrainOptions } from './TerrainOptions'
+export { TerrainHorizon } from './tiles/TerrainHorizon'
 export { Walker } from './walk/Walker'
 export type { WalkerOptions, WalkerState } from './walk/Walker'
 export type { Ground } from './rays/Ground'

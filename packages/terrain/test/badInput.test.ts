@@ -43,6 +43,7 @@ const cases: [message: string, call: () => unknown][] = [
   ],
   ['Terrain: maps must be GroundMaps or null', () => make({ maps: wrong({}) })],
   ['Terrain: mask must be a GroundMask or null', () => make({ mask: wrong({}) })],
+  ['Terrain: horizon must be a TerrainHorizon or null', () => make({ horizon: wrong({}) })],
   ['GroundMaps: at least one material needs maps', () => new GroundMaps({})],
   ['GroundMaps: materials are rock, scree', () => new GroundMaps(wrong({ lava: { albedo } }))],
   ['GroundMaps: rock.albedo must be a Texture', () => new GroundMaps({ rock: wrong({}) })],

@@ -28,7 +28,7 @@ interface Place {
   readonly clearance: number
 }
 
-const SHORE = { longitude: 2.1411, latitude: 46.19, clearance: 2 }
+const SHORE = { longitude: 1.6848, latitude: 46.15, clearance: 2 }
 const SUMMIT = { longitude: 0.438, latitude: 47.41, clearance: 2 }
 
 /** Viewer who sees all round. */

@@ -94,6 +94,8 @@ describe('tiles of a plane', () => {
       datumPoint: new Vector3(300, 20, -700),
       planes: [],
       seaLevel: -Infinity,
+      isOverGround: false,
+      clearance: 1,
       shadowDistance: 0,
       direction: new Vector3(0, 1, 0),
       occluder: 1,

@@ -3,6 +3,7 @@ import { fail } from '@welkin/geo'
 import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
 import type { Figure } from '../tiles/cpu/figure'
+import type { TerrainHorizon } from '../tiles/TerrainHorizon'
 import type { Tile } from '../tiles/Tile'
 import { ImageLoader } from './ImageLoader'
 import { PageAtlas } from './PageAtlas'
@@ -65,11 +66,12 @@ export class HeightPages {
     figure: Figure,
     resolution: number,
     bytes: number,
-    images: PageImages | null = null
+    images: PageImages | null = null,
+    horizon: TerrainHorizon | null = null
   ) {
     this.#source = source
     this.atlas = new PageAtlas(resolution, bytes, images !== null)
-    this.#baker = new PageBaker(source, figure, this.atlas, resolution)
+    this.#baker = new PageBaker(source, figure, this.atlas, resolution, horizon)
     this.#images =
       images === null ? null : new ImageLoader(images, tile => this.#baker.request(tile))
     this.#owners = Array.from({ length: this.atlas.capacity }, () => null)
@@ -184,12 +186,18 @@ export class HeightPages {
     tile.highest = Math.max(Math.min(most + margin, highest), most)
   }
 
+  #forget(owner: Tile): void {
+    owner.slot = -1
+    owner.heights = null
+  }
+
   #bake(tile: Tile, heights: Float32Array | null, slot: number): void {
     const owner = this.#owners[slot]
-    if (owner !== null) owner.slot = -1
+    if (owner !== null) this.#forget(owner)
     this.#owners[slot] = tile
     tile.slot = slot
     tile.fade = 1
+    tile.heights = null
     this.drawn++
     this.#baker.bake(this.#renderer!, tile, slot, heights)
   }
@@ -278,7 +286,7 @@ export class HeightPages {
     this.#flat.clear()
     this.#images?.clear()
     for (const [slot, owner] of this.#owners.entries()) {
-      if (owner !== null) owner.slot = -1
+      if (owner !== null) this.#forget(owner)
       this.#owners[slot] = null
     }
     this.drawn = 0

@@ -9,7 +9,9 @@ import { cubeToFigure, isFlat, type Figure } from '../tiles/cpu/figure'
 import type { Tile } from '../tiles/Tile'
 import { ellipsoidInShader, planeInShader } from '../tiles/tsl/figure'
 import type { PageAtlas } from './PageAtlas'
-import { PageQuads } from './PageQuads'
+import type { TerrainHorizon } from '../tiles/TerrainHorizon'
+import type { HeightReadback } from './HeightReadback'
+import { MOST, PageQuads } from './PageQuads'
 import { isPageSource, type PageRequest, type PageSource } from './PageSource'
 import {
   heightsOf,
@@ -30,6 +32,8 @@ export const spacingOf = ({ extent }: Tile, { maximumRadius }: Figure, steps: nu
 /** Draws pages, many at once, in two passes. */
 export class PageBaker {
   readonly #quads: PageQuads
+  /** Way of heights to the CPU; null if nobody asks for them. */
+  readonly #readback: HeightReadback | null
   /** Heights that were loaded, of one page; null if they come from a function. */
   readonly #loaded: DataTexture | null = null
   /** Colours of one page, and the pass that draws them; null without pictures. */
@@ -40,7 +44,8 @@ export class PageBaker {
     readonly figure: Figure,
     readonly atlas: PageAtlas,
     /** Cells along a tile's edge. */
-    readonly resolution: number
+    readonly resolution: number,
+    horizon: TerrainHorizon | null = null
   ) {
     const { heights, surface, heightSide, surfaceSide, density } = atlas
     const quads = (this.#quads = new PageQuads(atlas))
@@ -68,6 +73,8 @@ export class PageBaker {
       quads.addPass('heights', heightsOf(source, tile, heightSide), heights)
       quads.addPass('surface', surfaceOf(source, tile, surfaceSide, density), surface)
     }
+    const readback = (this.#readback = horizon?.readback(atlas, MOST) ?? null)
+    if (readback !== null) quads.addPass('readback', readback.output, readback.target, true)
   }
 
   /** Heights to load for a tile. */
@@ -102,6 +109,7 @@ export class PageBaker {
     center.copy(tile.center).addScaledVector(reference, -REFERENCE_STEP)
     const shortest = 2 * spacingOf(tile, this.figure, this.resolution)
     this.#quads.add(tile, slot, reference, center, shortest)
+    this.#readback?.add(tile)
     if (this.#loaded !== null && heights !== null) {
       ;(this.#loaded.image.data as Float32Array).set(heights)
       this.#loaded.needsUpdate = true
@@ -109,9 +117,10 @@ export class PageBaker {
     } else if (this.#quads.isFull) this.flush(renderer)
   }
 
-  /** Draws the pages that wait. */
+  /** Draws the pages that wait; for a horizon their tiles are told the heights some frames later. */
   flush(renderer: Renderer): void {
     this.#quads.draw(renderer)
+    this.#readback?.read(renderer)
   }
 
   /** Draws the colours of a page, as many as `request` asks heights for; the renderer is left as it was. */
@@ -127,6 +136,7 @@ export class PageBaker {
     this.#image?.pass.dispose()
     this.#image?.texture.dispose()
     this.#quads.dispose()
+    this.#readback?.dispose()
     this.#loaded?.dispose()
   }
 }

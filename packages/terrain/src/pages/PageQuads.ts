@@ -17,7 +17,7 @@ import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { PageAtlas } from './PageAtlas'
 
 /** Most pages of one drawing. */
-const MOST = 64
+export const MOST = 64
 
 /** Attributes of an instance, four numbers each. */
 const ATTRIBUTES = ['pageCube', 'pageCenter', 'pageReference', 'pageSlot'] as const
@@ -70,10 +70,13 @@ export class PageQuads {
    * Adds a shader to draw pages with.
    *
    * @param output - Value of a texel.
+   * @param isList - True if each page has a row of the target, and not its place in the atlas.
    */
-  addPass(name: string, output: Vec4, target: RenderTarget): void {
-    const { x, y } = attribute<'vec4'>('pageSlot', 'vec4')
-    const at = vec2(x, y).add(positionGeometry.xy).div(vec2(this.#columns, this.#rows))
+  addPass(name: string, output: Vec4, target: RenderTarget, isList = false): void {
+    const { x, y, z: row } = attribute<'vec4'>('pageSlot', 'vec4')
+    const place = isList ? vec2(0, row) : vec2(x, y)
+    const size = isList ? vec2(1, MOST) : vec2(this.#columns, this.#rows)
+    const at = place.add(positionGeometry.xy).div(size)
     const material = Object.assign(new NodeMaterial(), {
       name: `Welkin.Terrain.${name}`,
       blending: NoBlending,
@@ -104,7 +107,8 @@ export class PageQuads {
    * @param shortest - Shortest wavelength that vertices show [m].
    */
   add(tile: Tile, slot: number, reference: Vector3, center: Vector3, shortest: number): void {
-    const n = 4 * this.#count++
+    const row = this.#count++
+    const n = 4 * row
     const [cubes, centers, references, slots] = this.#attributes.map(({ array }) => array)
     tile.cube.toArray(cubes, n)
     cubes[n + 3] = tile.face
@@ -114,6 +118,7 @@ export class PageQuads {
     references[n + 3] = shortest
     slots[n] = slot % this.#columns
     slots[n + 1] = Math.floor(slot / this.#columns)
+    slots[n + 2] = row
   }
 
   /** Draws the pages that were added; the renderer is left as it was. */

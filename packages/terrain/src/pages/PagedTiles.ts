@@ -2,6 +2,7 @@ import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
 import type { Figure } from '../tiles/cpu/figure'
 import type { Viewer } from '../tiles/cpu/viewer'
+import type { TerrainHorizon } from '../tiles/TerrainHorizon'
 import { noTiles, TileTree } from '../tiles/TileTree'
 import { HeightPages } from './HeightPages'
 import type { PageImages } from './PageImages'
@@ -20,7 +21,7 @@ const FADE_FRAMES = 10
 const LEAP = 4
 
 /** Longest side of a cell of the finest tiles [m]. */
-const FINEST_CELL = 0.15
+const FINEST_CELL = 0.6
 
 /** Tiles that a viewer sees, and their pages: those that are missing are drawn, some in a frame. */
 export class PagedTiles {
@@ -48,12 +49,13 @@ export class PagedTiles {
     resolution: number,
     detail: number,
     bytes: number,
-    images: PageImages | null = null
+    images: PageImages | null = null,
+    readonly horizon: TerrainHorizon | null = null
   ) {
     const cells = (2 * figure.maximumRadius) / resolution / FINEST_CELL
     const finestLevel = Math.max(Math.ceil(Math.log2(cells)), 0)
     this.tree = new TileTree(figure, source, finestLevel, detail)
-    this.pages = new HeightPages(source, figure, resolution, bytes, images)
+    this.pages = new HeightPages(source, figure, resolution, bytes, images, horizon)
   }
 
   /**
@@ -83,6 +85,8 @@ export class PagedTiles {
     this.isFull = selection.lag === 0 && !pages.isFlat(tree.selections)
     const isStuck = left > 0 && drawn === 0 && selection.missing.length > 0 && pages.isStuck
     if (selection.lag === 0 || isStuck) this.#lastLag = selection.lag
+    if (!viewer.isOverGround) return
+    this.horizon?.cull(selection, viewer, tree.figure, pages.atlas.heightSide - 1)
   }
 
   /** Frees pages; the next update begins anew. */

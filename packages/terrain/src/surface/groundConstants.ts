@@ -33,12 +33,19 @@ export const DRY_CLIMATE = 1.4
 /** Share of the climate in where woods grow: fewer of them where it is dry [–]. Less: land from orbit is of one colour (*Terrain*). */
 export const DRY_WOODS = 1.4
 
-/** Part of the patches that is open where it is neither wet nor dry, over half of them [–]. */
-export const OPEN = 0.05
+/** Part of the patches that is open on level ground where it is neither wet nor dry, over half of them [–]. */
+export const OPEN = 0.4
 
 /** Moisture that land just above the sea lacks [–], and heights over it between which it does [m]: open plains below woods. */
 export const LOWLAND_DRYNESS = 0.4
 export const LOWLAND = [60, 420] as const
+
+/**
+ * Moisture that slopes gain on floors of valleys and plains, where people and grazing keep woods away, and slopes between which they do [1 − cosine]: 3° and
+ * 14°. Without: woods from 10 km and 400 km are spots that have nothing to do with the relief (*Terrain*, Orbit).
+ */
+export const SLOPE_WOODS = 0.5
+export const SLOPES = [0.0015, 0.03] as const
 
 /** Moisture that a meadow lacks of what a wood has at least [–]. More: woods have no edges from 1 km and 10 km (*Terrain*). */
 export const MOIST = 0.1

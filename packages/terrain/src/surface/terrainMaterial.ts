@@ -76,7 +76,7 @@ export function terrainMaterial(
   const material = new GroundMaterial()
   material.name = 'Welkin.Terrain'
   material.metalness = 0
-  const { radii, reference, seaLevel, seaVariance, waveTime, pole } = uniforms
+  const { stretch, reference, seaLevel, seaVariance, waveTime, pole } = uniforms
 
   const handed = {
     place: handedOn<Vec3>('vec3', 'Place'),
@@ -115,7 +115,7 @@ export function terrainMaterial(
   const ground = ofPages(atlas.surface.texture, 'ground')
   const picture = atlas.images === null ? null : ofPages(atlas.images.texture, 'picture')
   // Of the place itself: a varying less.
-  const up = figure.upAt(reference.mul(REFERENCE_STEP).add(offset), radii).toConst('up') as Vec3
+  const up = figure.upAt(reference.mul(REFERENCE_STEP).add(offset), stretch).toConst('up') as Vec3
   const { first, second } = faceAxes(face)
   // Two components of a vector along the ellipsoid tell the third.
   const outward = first.cross(second).toConst('outward')
@@ -157,7 +157,7 @@ export function terrainMaterial(
   const { cover } = sea
   material.water = cover
   const dry = normal.sub(surface.grain)
-  const lit = mix(dry, up.sub(sea.slope), cover).normalize()
+  const lit = mix(dry, up.sub(sea.slope), cover)
   const litView = (transformNormalToView(lit) as unknown as Vec3).toConst('litNormal')
   // Shadow maps ask for its alpha, and need not wait for the rest.
   material.colorNode = Fn(({ material: drawn }: NodeBuilder) => {

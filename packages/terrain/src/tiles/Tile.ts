@@ -38,6 +38,10 @@ export class Tile {
   urgency = 0
   /** Place of its page in the atlas; −1 without one. */
   slot = -1
+  /** Heights of its vertices as drawn, rows first, once they have come back from the GPU; null before [m]. */
+  heights: Float32Array | null = null
+  /** Pages that it has had so far. */
+  page = 0
   /** Share of the parent's page in what is drawn, in [0, 1]: 1 as its own page arrives, then ever less. */
   fade = 1
   /** Frame in which that share last changed. */

@@ -98,6 +98,13 @@ export const BELT_RIDGES = 0.95
 /** Part of the ridges of belts that grows as their height does, and not by its square. 1: coasts at their feet are broken into islands. */
 export const FOOTHILLS = 0.35
 
+/**
+ * Heights of the land without ridges between which they rise to their full height [m], and their share below. Without: coasts in belts are shreds
+ * of islands (*Terrain*, Orbit).
+ */
+export const COASTAL = [0, 900] as const
+export const COASTAL_RIDGES = 0.1
+
 /** Sum of continents over which hills rise. */
 export const HILLS_START = 0
 export const HILLS_END = 0.4
@@ -238,14 +245,19 @@ export function mountains(
   const rugged = lift * (FOOTHILLS + (1 - FOOTHILLS) * lift)
   const ruggedPerLift = FOOTHILLS + 2 * (1 - FOOTHILLS) * lift
   const mask = PLAINS + HILLS * hills + BELT_RIDGES * rugged
-  target.value =
-    LAND_OFFSET + LAND_HEIGHT * land.value + relief * (UPLIFT * lift + mask * ridges.value)
+  const level = LAND_OFFSET + LAND_HEIGHT * land.value + relief * UPLIFT * lift
+  const [inner, start] = smooth(...COASTAL, level)
+  const share = COASTAL_RIDGES + (1 - COASTAL_RIDGES) * inner
+  const sharePerLevel = (1 - COASTAL_RIDGES) * start
+  const mountain = relief * mask * ridges.value
+  target.value = level + share * mountain
   for (const axis of ['x', 'y', 'z'] as const) {
     const rise = belt[axis] * (1 - short.value) + short[axis] * (1 - belt.value)
     const turn = HILLS * edge * land[axis] + BELT_RIDGES * ruggedPerLift * rise
+    const slope = LAND_HEIGHT * land[axis] + relief * UPLIFT * rise
     target[axis] =
-      LAND_HEIGHT * land[axis] +
-      relief * (UPLIFT * rise + mask * ridges[axis] + turn * ridges.value)
+      slope * (1 + sharePerLevel * mountain) +
+      share * relief * (mask * ridges[axis] + turn * ridges.value)
   }
   return target
 }

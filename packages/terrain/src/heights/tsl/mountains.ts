@@ -1,10 +1,12 @@
-import { Break, Fn, If, float, smoothstep, vec3, vec4 } from 'three/tsl'
+import { Break, Fn, If, float, smoothstep, vec4 } from 'three/tsl'
 import { fractalSum, keptShare } from '../../noise/tsl/fractalSum'
 import { latticeNoise } from '../../noise/tsl/latticeNoise'
 import { layout, loop, type Float, type Vec3, type Vec4 } from '../../tsl-types'
 import {
   BELT_RIDGES,
   CHAINS,
+  COASTAL,
+  COASTAL_RIDGES,
   CONTINENTS,
   CRAGS,
   CRAG_ROUGHENING,
@@ -27,45 +29,11 @@ import {
   SOFT,
   STEEPNESS,
   UPLIFT,
-  type Belts,
-  type Warp
+  type Belts
 } from '../cpu/mountains'
+import { warped, type Warped } from './warped'
 
 const continents = /*#__PURE__*/ fractalSum('welkinContinents', CONTINENTS)
-
-/** A place that noise has moved. */
-interface Warped {
-  /** As of `latticeNoise`. */
-  readonly offset: Vec3
-  /** Displacement along each axis, per reach (w), and its gradient (xyz) [1/m]. */
-  readonly moves: readonly Vec4[]
-  /** Gradient at the place itself from that at the moved one, with the value in w left as it is. */
-  readonly back: (sum: Vec4) => Vec4
-}
-
-/** Moves a place by noise, where that is not too short to be seen. */
-function warped(
-  { inverse, reach, seed: first }: Warp,
-  reference: Vec3,
-  offset: Vec3,
-  shortest: Float,
-  seed: Float
-): Warped {
-  const kept = keptShare(float(inverse), shortest).toConst()
-  const moves = [0, 1, 2].map(axis => {
-    const noise = latticeNoise(reference, offset, float(inverse), seed.add(first + axis)).toConst()
-    return vec4(noise.xyz.mul(inverse), noise.w).mul(kept).toConst()
-  }) as unknown as Vec4[]
-  const [x, y, z] = moves
-  return {
-    offset: offset.add(vec3(x.w, y.w, z.w).mul(reach)).toConst(),
-    moves,
-    back: sum => {
-      const turn = x.xyz.mul(sum.x).add(y.xyz.mul(sum.y)).add(z.xyz.mul(sum.z))
-      return vec4(sum.xyz.add(turn.mul(reach)), sum.w).toConst()
-    }
-  }
-}
 
 /**
  * Ridged multifractal: valleys and crests where noise is 0, each octave as rough as those before are high. The longer octaves are of the
@@ -199,9 +167,21 @@ export const mountains = (
     .toConst('mask')
   const rugged = lifted.xyz.mul(rise.mul(2).add(FOOTHILLS).mul(BELT_RIDGES))
   const turn = land.xyz.mul(edge).add(rugged).mul(ridges.w)
-  const mountain = vec4(ridges.xyz.mul(mask).add(turn), ridges.w.mul(mask))
-  return land
+  const mountain = vec4(ridges.xyz.mul(mask).add(turn), ridges.w.mul(mask)).mul(relief).toConst()
+  const level = land
     .mul(LAND_HEIGHT)
-    .add(mountain.add(lifted.mul(UPLIFT)).mul(relief))
+    .add(lifted.mul(relief.mul(UPLIFT)))
     .add(vec4(0, 0, 0, LAND_OFFSET))
+    .toConst('level')
+  const [low, high] = COASTAL
+  const inner = level.w
+    .sub(low)
+    .div(high - low)
+    .clamp(0, 1)
+    .toConst('inner')
+  const share = smoothstep(0, 1, inner)
+    .mul(1 - COASTAL_RIDGES)
+    .add(COASTAL_RIDGES)
+  const sharePerLevel = inner.mul(inner.oneMinus()).mul((6 * (1 - COASTAL_RIDGES)) / (high - low))
+  return level.add(mountain.mul(share)).add(vec4(level.xyz.mul(sharePerLevel).mul(mountain.w), 0))
 }

@@ -9,6 +9,12 @@ import { faceAxes } from '../../tiles/tsl/cubeSphere'
 import type { ShaderFigure } from '../../tiles/tsl/figure'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 
+/**
+ * Shortest wavelength of pages for pixels, over that which their texels can show. 1: octaves count from four texels on alone, and land from 10 km and
+ * 400 km is as if out of focus (*Terrain*).
+ */
+const SHARPNESS = 0.5
+
 /** Tile that a page is drawn for, as nodes that are the same for all pixels of the page. */
 export interface PageUniforms {
   /** Point of the cube above the centre, and its face. */
@@ -57,7 +63,7 @@ function placeAt(
 const upAt = (tile: PageUniforms, { fromCenter }: PagePlace): Vec3 => {
   const { cube, radii, figure } = tile
   const center = cube.normalize().mul(radii)
-  return figure.upAt(center.add(fromCenter), radii).toConst()
+  return figure.upAt(center.add(fromCenter), radii.x.div(radii)).toConst()
 }
 
 const patchAt = (tile: PageUniforms, { reference, offset }: PagePlace, shortest: Float): Float =>
@@ -98,7 +104,7 @@ export const surfaceOf = (
   Fn(() => {
     const axes = faceAxes(tile.face)
     const place = placeAt(tile, axes, texelOf(side), side)
-    const shortest = tile.shortest.div(density).toConst('shortest') as Float
+    const shortest = tile.shortest.mul(SHARPNESS / density).toConst('shortest') as Float
     const ground = source.sample(place, shortest).toConst('ground') as Vec4
     return surfaceTexel(tile, axes, place, { gradient: ground.xyz, height: ground.w }, shortest)
   })()
@@ -161,6 +167,6 @@ export const loadedSurfaceOf = (
       .add(area.cross(a.step).mul(b.rise))
       .div(area.dot(area))
       .toConst('slope')
-    const shortest = tile.shortest.div(float(density))
+    const shortest = tile.shortest.mul(SHARPNESS / density)
     return surfaceTexel(tile, axes, place, { gradient, height: at(0, 0) }, shortest)
   })()

@@ -14,6 +14,8 @@ import {
   ROCK_PATCH,
   ROCK_STEEPNESS,
   SCREE,
+  SLOPES,
+  SLOPE_WOODS,
   SHORE,
   SHORE_PATCH,
   SNOW_BY_FOURTH,
@@ -71,7 +73,8 @@ export function groundShares(place: PlaceOnCPU): SharesOnCPU {
   )
   const steepness = 1 - cosSlope + ROCK_PATCH * patch
   const lowland = 1 - smoothstep(overSea, ...LOWLAND)
-  const moisture = patch - dryness - DRY_WOODS * climate - OPEN - LOWLAND_DRYNESS * lowland
+  const wooded = SLOPE_WOODS * smoothstep(1 - cosSlope, ...SLOPES)
+  const moisture = patch + wooded - dryness - DRY_WOODS * climate - OPEN - LOWLAND_DRYNESS * lowland
   const layers = {
     snow:
       smoothstep(overSnow + SNOW_PATCH * patch, ...SNOW_OVER) *

@@ -15,6 +15,8 @@ import {
   ROCK_PATCH,
   ROCK_STEEPNESS,
   SCREE,
+  SLOPES,
+  SLOPE_WOODS,
   SHORE,
   SHORE_PATCH,
   SNOW_BY_FOURTH,
@@ -156,6 +158,7 @@ export function groundRules(
     .sub(climate.mul(DRY_WOODS))
     .sub(OPEN)
     .sub(lowland.mul(LOWLAND_DRYNESS))
+    .add(smoothstep(...SLOPES, cosSlope.oneMinus()).mul(SLOPE_WOODS))
     .toConst()
   const woods = smoothstep(
     lost.add(MOIST).negate(),

@@ -20,8 +20,8 @@ const GRAIN_VARIANCE = 0.3
 const ROCK = [0.19, 0.176, 0.158]
 const DARK_ROCK = [0.105, 0.098, 0.092]
 const SCREE = [0.238, 0.228, 0.21]
+const TUNDRA = [0.095, 0.088, 0.05]
 const SAND = [0.4, 0.32, 0.215]
-const SEAWEED = [0.03, 0.026, 0.013]
 const DESERT = [0.39, 0.265, 0.15]
 const GRASS = [0.066, 0.1, 0.03]
 const SOIL = [0.052, 0.04, 0.027]
@@ -106,7 +106,7 @@ export function groundSurface(
   const shrubs = smoothstep(0.3, 0.5, crown.add(patch.sub(dryness).mul(0.35)).sub(0.05)).toConst(
     'shrubs'
   )
-  const meadow = mix(grassland, color(SHRUB), shrubs.mul(0.75))
+  const meadow = mix(grassland, color(SHRUB), shrubs.mul(0.75)).toConst('meadow') as Vec3
   const leaves = mix(
     color(FOREST),
     color(BROADLEAF),
@@ -115,28 +115,22 @@ export function groundSurface(
   const floor = leaves.mul(light.mul(1.3).add(crown.mul(1.2)).add(1).max(0.3))
   const forest = mix(meadow, floor, tone.mul(0.2).add(0.85).clamp(0, 1))
   const desert = color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony)
-  const scree = color(SCREE).mul(tone.mul(0.6).add(1).clamp(0.4, 1.3)).mul(stony)
-  const tangle = blade.mul(0.7).add(tuft.mul(0.7)).toConst('tangle') as Float
-  const sand = Fn(() => {
-    const beach = color(SAND).toVar('beach') as unknown as Vec3 & { assign(value: Vec3): void }
-    If(inland.lessThan(1), () => {
-      // What high water left lies in strands, a metre above the sea.
-      const washed = overSea.add(tuft.mul(0.25)).add(patch.mul(0.5)).toConst()
-      const strand = smoothstep(0.6, 0.9, washed).mul(smoothstep(1.1, 1.5, washed).oneMinus())
-      const seaweed = strand.mul(smoothstep(0.02, 0.25, tangle)).mul(0.85)
-      beach.assign(mix(beach.mul(stone.mul(0.14).add(1)), color(SEAWEED), seaweed))
-    })
-    return beach
-  })()
-  const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.3))).toConst('wet')
+  // Turf of sedges and lichen lies between the stones, most of it just above the trees.
+  const turfed = smoothstep(-0.45, 0.3, patch.sub(overTrees.mul(1 / 2500)).add(stone.mul(-0.5)))
+  const stones = color(SCREE).mul(tone.mul(0.6).add(1).clamp(0.4, 1.3))
+  const scree = mix(stones, color(TUNDRA), turfed.mul(0.75)).mul(stony)
+  const tangle = blade.add(boulder.mul(0.3)).toConst('tangle') as Float
+  const sand = color(SAND).mul(stone.mul(0.1).add(patch.mul(0.35)).add(1))
+  const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.06))).toConst('wet')
   const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
   const mapped = maps === null ? null : maps.groundAt(place, layers, colors)
-  const made = mapped === null ? layered(layers, colors) : mapped.color
+  const made =
+    mapped === null ? layered(layers, colors, [tone, stony, light, shrubs]) : mapped.color
   const dry = made.mul(wet.mul(0.45).add(0.55))
 
   // Stones stand out of rock and scree, hardly out of grass, sand and snow.
-  const stones = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
-  const ownBump = mix(float(0.05), stones, inland.max(bare)).mul(snow.mul(-0.93).add(1))
+  const stoniness = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
+  const ownBump = mix(float(0.05), stoniness, inland.max(bare)).mul(snow.mul(-0.96).add(1))
   const bump = (mapped === null ? ownBump : ownBump.mul(mapped.share.oneMinus())).toConst('bump')
   const ownRough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
   const rough =
@@ -180,10 +174,31 @@ export function groundSurface(
   }
 }
 
-/** Colour of the ground of materials that lie on each other. */
-function layered(layers: GroundLayers, colors: GroundColors): Vec3 {
-  const { snow, bare, inland, bareness, dryness, woods } = layers
-  const soil = mix(mix(colors.grass, colors.forest, woods), colors.desert, dryness)
-  const land = mix(colors.sand, mix(soil, colors.scree, bareness), inland)
-  return mix(mix(land, colors.rock, bare), colors.snow, snow)
-}
+/**
+ * Colour of the ground of materials that lie on each other, each found where there is any of it.
+ *
+ * @param shared - Values that several of them need.
+ */
+const layered = (layers: GroundLayers, colors: GroundColors, shared: Float[]): Vec3 =>
+  Fn(() => {
+    for (const value of [...Object.values(layers), ...shared]) {
+      ;(value as unknown as { toStack(): void }).toStack()
+    }
+    const { snow, bare, inland, bareness, dryness, woods } = layers
+    const made = vec3(0).toVar('made') as unknown as Vec3 & { assign(value: Vec3): void }
+    const lay = (share: Float, layer: Vec3): void => {
+      If(share.greaterThan(0), () => {
+        made.assign(mix(made, layer, share))
+      })
+    }
+    If(bare.max(snow).lessThan(1), () => {
+      made.assign(colors.grass)
+      lay(woods, colors.forest)
+      lay(dryness, colors.desert)
+      lay(bareness, colors.scree)
+      lay(inland.oneMinus(), colors.sand)
+    })
+    lay(bare, colors.rock)
+    made.assign(mix(made, colors.snow, snow))
+    return made
+  })()

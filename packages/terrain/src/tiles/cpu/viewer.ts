@@ -11,8 +11,12 @@ export interface Viewer {
    * ground, so that they are of the same kind on a mountain and at sea.
    */
   readonly datumPoint: Vector3
+  /** Height above the ground [m]. */
+  readonly clearance: number
   /** Sides of the view, relative to the position. */
   readonly planes: readonly Plane[]
+  /** True of a viewer who looks from a point over the ground: one below it, or with parallel lines of sight, sees what ground hides from others. */
+  readonly isOverGround: boolean
   /** Surface of the sea [m]; −Infinity for none. */
   readonly seaLevel: number
   /** Distance within which tiles out of view may cast shadows into it [m]; 0 for none. */
@@ -42,7 +46,7 @@ const subpoint = new Vector3()
  * @param clearance - Height above the ground [m], > 0.
  * @param lowest - Lower bound of all ground [m].
  * @param worldToECEF - Rotation and scale of the world, translation ignored.
- * @param shadowDistance - See {@link Viewer}, like `seaLevel`.
+ * @param shadowDistance - See {@link Viewer}, like `seaLevel` and `isOverGround`.
  */
 export function viewerOf(
   camera: Camera,
@@ -52,7 +56,8 @@ export function viewerOf(
   worldToECEF: Matrix4,
   figure: Figure,
   shadowDistance: number,
-  seaLevel = -Infinity
+  seaLevel = -Infinity,
+  isOverGround = false
 ): Viewer {
   figure.footPoint(positionECEF, subpoint)
   const up = figure.surfaceNormal(positionECEF)
@@ -69,8 +74,11 @@ export function viewerOf(
   return {
     position: positionECEF.clone(),
     datumPoint: subpoint.clone().addScaledVector(up, clearance),
+    clearance,
     // Left, right, top and bottom: near and far depend on the kind of depth.
     planes: frustum.planes.slice(0, 4).map(plane => plane.clone()),
+    isOverGround:
+      isOverGround && !(camera as { isOrthographicCamera?: boolean }).isOrthographicCamera,
     seaLevel,
     shadowDistance,
     direction: direction.divideScalar(radius),

@@ -11,8 +11,8 @@ export interface ShaderFigure {
   readonly turnOfUp: (cube: Vec3, delta: Vec3, stretch: Vec3) => Vec3
   /** Up above a point of the cube. */
   readonly upOfCube: (cube: Vec3, stretch: Vec3) => Vec3
-  /** Up at a place, from the figure's centre [m]. */
-  readonly upAt: (position: Vec3, radii: Vec3) => Vec3
+  /** Up at a place, from the figure's centre [m]; `stretch` by any factor. */
+  readonly upAt: (position: Vec3, stretch: Vec3) => Vec3
 }
 
 /** An ellipsoid. */
@@ -21,10 +21,8 @@ export const ellipsoidInShader: ShaderFigure = {
   difference: (cube, delta, radii) => unitDifference(cube, delta).mul(radii),
   turnOfUp: (cube, delta, stretch) => unitDifference(cube.mul(stretch), delta.mul(stretch)),
   upOfCube: (cube, stretch) => cube.mul(stretch).normalize(),
-  upAt: (position, radii) => {
-    const onSphere = position.div(radii)
-    return onSphere.mul(radii.x.div(radii)).normalize()
-  }
+  // Normalised it may be of any size: what has no division costs least.
+  upAt: (position, stretch) => position.mul(stretch).mul(stretch).normalize()
 }
 
 /** The plane of a flat world. */
