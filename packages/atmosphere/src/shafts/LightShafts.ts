@@ -323,12 +323,13 @@ export class LightShafts implements ShadowedShafts {
     return qualities[this.#quality].rays === 0 || isOrthographicCamera === true
   }
 
-  /** Frees its textures, and the slot of the light's shadow. It can be used again. What was added stays, and is not its own. */
+  /** Frees its textures, and the slot of the light's shadow. It can be used again. What was added stays, and lends it no maps until then. */
   dispose(): void {
     this.#isActive = false
     releaseShadow(this.light, this)
     this.#map.dispose()
     this.#volume.dispose()
+    this.#shadows.free()
     for (const screen of this.screens) screen.free()
   }
 }
