@@ -113,7 +113,10 @@ export class ScreenShafts implements ScreenShadows {
     const most = Math.max(...lookUp.uniforms.linearSRGB.map(({ value }) => value.y))
     this.#gain.value = Math.max(most, 1e-30) * Math.max(...source.irradiance.value.toArray(), 1e-30)
     this.grid.freePath.value = 1 / (Math.max(Math.min(...air), 1e-12) + fog)
-    this.grid.render(renderer, shafts.version, (at, pixel) => this.#march(renderer, at, pixel))
+    this.grid.render(renderer, shafts.version, {
+      lightAt: (at, pixel) => this.#march(renderer, at, pixel),
+      distanceAt: at => this.#endIn(renderer, at).distance
+    })
   }
 
   update(view: AtmosphereView): void {
