@@ -2,6 +2,7 @@ import type { RenderTarget } from 'three'
 import {
   Fn,
   If,
+  exp2,
   float,
   int,
   log2,
@@ -37,7 +38,7 @@ const SAME_DEPTH = 0.35
 const OTHER_DEPTH = 0.8
 
 /** Octaves from a pixel's depth to that of pixels around, which are at one depth. */
-const NEAR_MEAN = 0.2
+export const NEAR_MEAN = 0.2
 
 /** Depth that marks means that are not to be used, and pixels without a thin thing: none is near it [octaves]. */
 const APART_DEPTH = 6e4
@@ -86,36 +87,41 @@ export interface LostLight {
   readonly lost: Vec3
   /** Light of its air if nothing cast shadows, likewise. */
   readonly lit: Vec3
-  /** Distance to what is seen [m]. */
-  readonly distance: Float
+  /** log₂ of the distance to what is seen [octaves of a metre]. */
+  readonly octaves: Float
+}
+
+/** What a pixel sees. */
+export interface SeenPixel extends Pick<LostLight, 'octaves'> {
+  /** Octaves by which its distance may be off, and those of pixels around are nearer to it; null if it is exact. */
+  readonly tolerance: Float | null
+  /** See {@link LostLight}, of a pixel so many octaves farther; asked for in a branch. */
+  lit(farther: Float): Vec3
 }
 
 /** How rays of a picture are marched; called within a shader function. */
 export interface GridMarch {
   /** Light at a place in the picture, given the pixel of the grid. */
   lightAt(at: Vec2, pixel: Vec2): LostLight
-  /** Distance to what is seen there [m]. */
-  distanceAt(at: Vec2): Float
+  /** log₂ of the distance to what is seen there; negative where that may be left out. */
+  octavesAt(at: Vec2): Float
 }
 
 /**
  * Light that a picture's pixels lose, marched for a grid of them, then taken from those around a pixel that are at its
  * depth: from nine, of which any four that touch have samples in all places of their steps.
  *
- * A first pass marches. A second one marches, in blocks where something thin is seen that no pixel of the grid around is at the
- * depth of, a pixel of that. A third one puts three things side by side in one texture: means of the four around each corner of
- * the grid, with their depth if they may be mixed, which most pixels read once; parts of light; and those of thin things. Other
- * pixels lose the part of their own light that those around at their depth lose of theirs, with the same weights.
+ * A first pass marches. A second one puts three things side by side in one texture: means of the four around each corner of
+ * the grid, with their depth if they may be mixed, which most pixels read once; parts of light; and, for every two pixels of
+ * the grid, that of a thing about them that none around is at the depth of, such as a mast. Other pixels lose the part of their
+ * own light that those around at their depth lose of theirs, with the same weights.
  */
 export class LostLightGrid {
   /** Lost light with log₂ of the light that there is; its part of that with log₂ of the distance. */
   readonly #marched: RenderTarget
-  /** Parts with log₂ of the distance of pixels of another depth; distance 0 where there are none. */
-  readonly #thin: RenderTarget
   readonly target: RenderTarget
   readonly #lost: TextureNode
   readonly #parts: TextureNode
-  readonly #thinParts: TextureNode
   readonly #texels: TextureNode
   /** Size of the picture, and of the grid [pixels]. */
   readonly #size = vector2()
@@ -134,12 +140,10 @@ export class LostLightGrid {
 
   constructor() {
     this.#marched = tableTarget('Welkin.LightShafts', 1, 1, 2)
-    this.#thin = tableTarget('Welkin.LightShafts', 1, 1)
     this.target = tableTarget('Welkin.LightShafts', 1, 1)
     const [lost, parts] = this.#marched.textures
     this.#lost = texture(lost)
     this.#parts = texture(parts)
-    this.#thinParts = texture(this.#thin.texture)
     this.#texels = texture(this.target.texture)
   }
 
@@ -148,10 +152,11 @@ export class LostLightGrid {
     this.#size.value.set(Math.max(width, 1), Math.max(height, 1))
     this.#density.value = 1 / spacing
     const { x, y } = this.#gridSize.value.copy(this.#size.value).divideScalar(spacing).ceil()
-    for (const each of [this.#marched, this.#thin]) each.setSize(x, y)
+    this.#marched.setSize(x, y)
     // A column of means more than there are corners, for pixels beyond the last of the grid.
-    this.target.setSize(3 * x + 2, y + 1)
-    const texelSize = this.#texelSize.value.set(1 / (3 * x + 2), 1 / (y + 1))
+    const [columns, rows] = [2 * x + 2 + Math.ceil(x / 2), y + 1]
+    this.target.setSize(columns, rows)
+    const texelSize = this.#texelSize.value.set(1 / columns, 1 / rows)
     this.#scale.value.copy(this.#size.value).divideScalar(spacing).multiply(texelSize)
     this.#offset.value.setScalar(1 - 0.5 / spacing).multiply(texelSize)
   }
@@ -167,18 +172,18 @@ export class LostLightGrid {
       const marched = outputs<[Vec4, Vec4]>(2, ([lostOut, partsOut]) => {
         const pixel = this.#pixel
         const found = march.lightAt(this.#placeOf(pixel, vec2(0)), pixel)
-        const { lost, lit, distance } = found
-        const scale = float(LIGHT_SCALE).div(this.#growth(distance)).toConst()
+        const { lost, lit, octaves } = found
+        const scale = float(LIGHT_SCALE).div(this.#growth(octaves)).toConst()
         const light = log2(luminance(lit).max(MIN_LIGHT).mul(scale))
         lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), light))
-        partsOut.assign(vec4(partsOf(found), log2(distance)))
+        partsOut.assign(vec4(partsOf(found), octaves))
       })
-      this.#passes = [marched, Fn(() => this.#marchThin(march))(), Fn(() => this.#arrange())()].map(
+      this.#passes = [marched, Fn(() => this.#arrange(march))()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
       )
       this.#compiled = version
     }
-    for (const [i, target] of [this.#marched, this.#thin, this.target].entries()) {
+    for (const [i, target] of [this.#marched, this.target].entries()) {
       this.#passes[i].render(renderer, target)
     }
   }
@@ -199,41 +204,48 @@ export class LostLightGrid {
     return loadTexel(source, pixel.clamp(vec2(0), this.#gridSize.sub(1))).toConst()
   }
 
-  /** Part of the light of the pixel, about one of the grid, whose depth is farthest from those of nine of the grid. */
-  #marchThin({ lightAt, distanceAt }: GridMarch): Vec4 {
-    const pixel = this.#pixel
+  /**
+   * Part of the light of the pixel, about two of the grid, whose depth is farthest from those of the nine of the grid around it.
+   *
+   * @param block - Column of two pixels of the grid, and row.
+   */
+  #marchThin({ lightAt, octavesAt }: GridMarch, block: Vec2): Vec4 {
     const spacing = float(1).div(this.#density).round().toConst() as Float
     const farthest = float(OTHER_DEPTH).toVar()
     const place = vec2(-1).toVar() as Vec2
-    loop('blockPixel', int(spacing.mul(spacing)), index => {
-      const at = this.#placeOf(pixel, placeIn(index, spacing).sub(spacing.div(2).floor()))
-      const depth = log2(distanceAt(at)).toConst()
+    loop('blockPixel', int(spacing.mul(spacing).mul(2)), index => {
+      const inBlock = placeIn(index, spacing.mul(2))
+      const second = inBlock.x.div(spacing).floor()
+      const pixel = block.mul(vec2(2, 1)).add(vec2(second, 0)).toConst() as Vec2
+      const aside = inBlock.sub(vec2(second.mul(spacing), 0)).sub(spacing.div(2).floor())
+      const at = this.#placeOf(pixel, aside)
+      const depth = octavesAt(at).toConst()
       const apart = float(APART_DEPTH).toVar()
       loop('around', 9, other => {
         const { w } = this.#texelOf(this.#parts, pixel.add(placeIn(other, 3)).sub(1))
         apart.assign(apart.min(depth.sub(w).abs()))
       })
-      If(apart.greaterThan(farthest), () => {
+      If(apart.greaterThan(farthest).and(depth.greaterThan(0)), () => {
         farthest.assign(apart)
         place.assign(at)
       })
     })
     const result = vec4(0, 0, 0, APART_DEPTH).toVar()
     If(place.x.greaterThanEqual(0), () => {
-      const found = lightAt(place, pixel)
-      result.assign(vec4(partsOf(found), log2(found.distance)))
+      const found = lightAt(place, block)
+      result.assign(vec4(partsOf(found), found.octaves))
     })
     return result
   }
 
-  /** A texel of the target: the mean of the four pixels about a corner of the grid, or a pixel's part. */
-  #arrange(): Vec4 {
+  /** A texel of the target: the mean of the four pixels about a corner of the grid, a pixel's part, or a thin thing's. */
+  #arrange(march: GridMarch): Vec4 {
     const size = this.#gridSize
     const texel = uv().div(this.#texelSize).floor().toConst() as unknown as Vec2
     const result = vec4(0).toVar()
     const pixel = texel.sub(vec2(size.x.add(2), 0)).toConst() as Vec2
     If(pixel.x.greaterThan(size.x.sub(0.5)), () => {
-      result.assign(this.#texelOf(this.#thinParts, pixel.sub(vec2(size.x, 0))))
+      result.assign(this.#marchThin(march, pixel.sub(vec2(size.x, 0)).toConst() as Vec2))
     })
       .ElseIf(pixel.x.greaterThan(-0.5), () => {
         result.assign(this.#texelOf(this.#parts, pixel))
@@ -262,7 +274,8 @@ export class LostLightGrid {
    * Growth of the light of air with distance, about as that of even air: light over it is about the same for pixels
    * whose distances differ a little, and is what they share.
    */
-  #growth(distance: Float): Float {
+  #growth(octaves: Float): Float {
+    const distance = exp2(octaves).toConst()
     return distance.div(distance.add(this.freePath))
   }
 
@@ -270,52 +283,62 @@ export class LostLightGrid {
    * Light that a pixel loses, as {@link LostLight} has it.
    *
    * @param at - Its place in the picture.
-   * @param lit - See {@link LostLight}; asked for in a branch.
    */
-  read(at: Vec2, distance: Float, lit: () => Vec3): Vec3 {
-    const own = log2(distance).toConst() as Float
+  read(at: Vec2, { octaves: own, tolerance, lit }: SeenPixel): Vec3 {
     const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
-    const lost = mean.rgb.mul(this.#growth(distance).div(LIGHT_SCALE)).toVar() as Vec3
-    If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN), () => {
-      const size = this.#gridSize
-      const place = middle.div(this.#texelSize).sub(0.5).toConst()
-      const nearest = place.floor().toConst() as Vec2
-      const towards = place.sub(nearest).sub(0.5).toConst()
-      const sum = vec4(0).toVar()
-      // Parts follow means, and those of thin things follow them.
-      const add = (index: Int, weightOf: (aside: Vec2) => Float, least: number): void => {
-        const aside = placeIn(index.mod(9) as Int, 3)
-          .sub(1)
-          .toConst() as Vec2
-        const pixel = nearest.add(aside).clamp(vec2(0), size.sub(1))
-        const column = float(index.div(9)).add(1).mul(size.x).add(2)
-        const other = loadTexel(this.#texels, pixel.add(vec2(column, 0))).toConst()
-        const isNear = other.w
-          .sub(own)
-          .abs()
-          .sub(OTHER_DEPTH)
-          .div(SAME_DEPTH - OTHER_DEPTH)
-        const weight = isNear.clamp(least, 1).mul(weightOf(aside)).toConst()
-        sum.addAssign(vec4(other.rgb.mul(weight), weight))
-      }
-      loop('neighbour', 9, index => {
-        // As means have them between which one mixes.
-        const weightOf = (aside: Vec2): Float => {
-          const mixed = aside.mul(towards).add(0.5).div(aside.abs().add(1)).toConst()
-          return mixed.x.mul(mixed.y)
+    const nearer = (octaves: Float): Float =>
+      tolerance === null ? float(0) : octaves.sub(own).clamp(tolerance.negate(), tolerance)
+    const growth = this.#growth(own.add(nearer(mean.w)))
+    const lost = mean.rgb.mul(growth.div(LIGHT_SCALE)).toVar() as Vec3
+    If(
+      own
+        .sub(mean.w)
+        .abs()
+        .greaterThan(tolerance ?? NEAR_MEAN),
+      () => {
+        const size = this.#gridSize
+        const place = middle.div(this.#texelSize).sub(0.5).toConst()
+        const nearest = place.floor().toConst() as Vec2
+        const towards = place.sub(nearest).sub(0.5).toConst()
+        const sum = vec4(0).toVar()
+        const farther = float(0).toVar()
+        // Parts follow means, and those of thin things follow them.
+        const add = (index: Int, weightOf: (aside: Vec2) => Float, least: number): void => {
+          const aside = placeIn(index.mod(9) as Int, 3)
+            .sub(1)
+            .toConst() as Vec2
+          const pixel = nearest.add(aside).clamp(vec2(0), size.sub(1)).toConst() as Vec2
+          const isThin = float(index.div(9)).toConst() as Float
+          const x = pixel.x.div(isThin.add(1)).floor().add(isThin.add(1).mul(size.x)).add(2)
+          const other = loadTexel(this.#texels, vec2(x, pixel.y)).toConst()
+          const isNear = other.w
+            .sub(own)
+            .abs()
+            .sub(OTHER_DEPTH)
+            .div(SAME_DEPTH - OTHER_DEPTH)
+          const weight = isNear.clamp(least, 1).mul(weightOf(aside)).toConst()
+          sum.addAssign(vec4(other.rgb.mul(weight), weight))
+          if (tolerance) farther.addAssign(nearer(other.w).mul(weight))
         }
-        add(index, weightOf, MIN_WEIGHT)
-      })
-      If(sum.w.lessThan(FEW), () => loop('other', 18, index => add(index, () => float(1), 0)))
-      lost.assign(lit().mul(sum.rgb.div(sum.w)))
-    })
+        loop('neighbour', 9, index => {
+          // As means have them between which one mixes.
+          const weightOf = (aside: Vec2): Float => {
+            const mixed = aside.mul(towards).add(0.5).div(aside.abs().add(1)).toConst()
+            return mixed.x.mul(mixed.y)
+          }
+          add(index, weightOf, MIN_WEIGHT)
+        })
+        If(sum.w.lessThan(FEW), () => loop('other', 18, index => add(index, () => float(1), 0)))
+        lost.assign(lit(farther.div(sum.w)).mul(sum.rgb.div(sum.w)))
+      }
+    )
     return lost
   }
 
   /** Frees its textures, which are made again where it is drawn. */
   dispose(): void {
-    for (const owned of [this.#marched, this.#thin, this.target, ...this.#passes]) owned.dispose()
+    for (const owned of [this.#marched, this.target, ...this.#passes]) owned.dispose()
     this.#passes = []
   }
 }
