@@ -1,7 +1,8 @@
-import { fail } from '@welkin/geo'
+import { checkOptions, fail } from '@welkin/geo'
 import { Fn, output, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
+import { shaftsIn, type AirOptions } from '../view/AirShadows'
 import { AtmosphereNode } from '../view/AtmosphereNode'
 import { coveredPosition } from '../view/tsl/coveredPosition'
 import { aerialPerspectiveTo } from './tsl/aerialPerspective'
@@ -41,6 +42,18 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
   }
 }
 
-/** Aerial perspective as a scene's fog: see {@link AerialPerspectiveFogNode}. */
-export const aerialPerspectiveFog = (atmosphere: Atmosphere): AerialPerspectiveFogNode =>
-  new AerialPerspectiveFogNode(atmosphere)
+/**
+ * Aerial perspective as a scene's fog: see {@link AerialPerspectiveFogNode}.
+ *
+ * @param options - `shafts` for the air and the sky of all materials: the same as `atmosphere.add(shafts)`, after all fogs.
+ */
+export function aerialPerspectiveFog(
+  atmosphere: Atmosphere,
+  options: Pick<AirOptions, 'shafts'> = {}
+): AerialPerspectiveFogNode {
+  checkOptions('aerialPerspectiveFog', options, 'shafts')
+  const node = new AerialPerspectiveFogNode(atmosphere)
+  for (const each of shaftsIn(options.shafts))
+    if (!atmosphere.layers.includes(each)) atmosphere.add(each)
+  return node
+}

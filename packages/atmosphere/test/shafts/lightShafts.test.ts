@@ -4,6 +4,7 @@ import { float, vec4 } from 'three/tsl'
 import { describe, expect, it, vi } from 'vitest'
 import {
   aerialPerspective,
+  aerialPerspectiveFog,
   Atmosphere,
   AtmosphereShell,
   distanceFog,
@@ -275,6 +276,15 @@ describe('what is added to light shafts', () => {
     shafts.set({ quality: 'low' }).add(occluder).set({ quality: 'high' }).remove(occluder)
     expect(home.layers).toEqual(layers)
     expect(home.layersVersion).toBeGreaterThan(layersVersion)
+  })
+
+  it('is added to the atmosphere by the fog of its materials, once', () => {
+    const home = new Atmosphere()
+    const shafts = lightShafts(home, camera, new SunDirectionalLight(home))
+    for (let i = 0; i < 2; i++) aerialPerspectiveFog(home, { shafts })
+    expect(home.layers).toEqual([shafts])
+    expect(() => aerialPerspectiveFog(new Atmosphere(), { shafts })).toThrow('LightShafts: atmosphere')
+    expect(() => aerialPerspectiveFog(home, { shaft: shafts } as never)).toThrow('shaft')
   })
 
   it('shares the map of a height field with the shadow on surfaces, of any light', () => {
