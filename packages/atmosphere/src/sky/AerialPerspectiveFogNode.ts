@@ -1,8 +1,8 @@
-import { checkOptions, fail } from '@welkin/geo'
+import { fail } from '@welkin/geo'
 import { Fn, output, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
-import { shaftsIn, type AirOptions } from '../view/AirShadows'
+import type { AirOptions } from '../view/AirShadows'
 import { AtmosphereNode } from '../view/AtmosphereNode'
 import { coveredPosition } from '../view/tsl/coveredPosition'
 import { aerialPerspectiveTo } from './tsl/aerialPerspective'
@@ -47,13 +47,10 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
  *
  * @param options - `shafts` for the air and the sky of all materials: the same as `atmosphere.add(shafts)`, after all fogs.
  */
-export function aerialPerspectiveFog(
+export const aerialPerspectiveFog = (
   atmosphere: Atmosphere,
-  options: Pick<AirOptions, 'shafts'> = {}
-): AerialPerspectiveFogNode {
-  checkOptions('aerialPerspectiveFog', options, 'shafts')
-  const node = new AerialPerspectiveFogNode(atmosphere)
-  for (const each of shaftsIn(options.shafts))
-    if (!atmosphere.layers.includes(each)) atmosphere.add(each)
-  return node
+  { shafts }: Pick<AirOptions, 'shafts'> = {}
+): AerialPerspectiveFogNode => {
+  if (shafts) atmosphere.add(...[shafts].flat())
+  return new AerialPerspectiveFogNode(atmosphere)
 }
