@@ -125,7 +125,8 @@ gpuTest(
         const isFar = pixel.x.add(pixel.y).mod(2).greaterThan(0.5)
         return { lost: vec3(part), lit: vec3(1), octaves: isFar.select(13, 7).toConst() as Float }
       },
-      octavesAt: () => float(10) as Float
+      octavesAt: () => float(10) as Float,
+      depthAt: () => float(1) as Float
     })
     // Rounding puts places a little beyond the middles of the first and the last pixels.
     const places = [0.5 - 1e-4, 0.5, width / 3, width - 0.5, width - 0.5 + 1e-4].flatMap(x =>
@@ -138,7 +139,7 @@ gpuTest(
       renderer,
       places.map(([x, y]) => [x, y, 10, 0]),
       ({ x, y, z }) =>
-        vec4(grid.read(vec2(x, y), { octaves: z, tolerance: null, lit: () => vec3(2) }), 0)
+        vec4(grid.read(vec2(x, y), { octaves: z, tolerance: 0, lit: () => vec3(2) }), 0)
     )
     places.forEach((at, i) => {
       expectClose(results[4 * i], 2 * part, { relative: 2e-3 }, `at ${at.join(', ')}`)

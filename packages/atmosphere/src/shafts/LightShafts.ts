@@ -50,8 +50,8 @@ const _axes = new Matrix4()
  * const air = aerialPerspective(color, depth, camera, atmosphere, { shafts })
  * ```
  *
- * Materials that draw the air themselves have them by `aerialPerspectiveFog(atmosphere, { shafts })`, which adds them to the
- * atmosphere: sky and fogs that were added before have shafts then, later fogs none. Each fragment
+ * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they are added to the
+ * atmosphere: `atmosphere.add(shafts)`. Fogs that were added before have shafts, later ones none. Each fragment
  * reads a volume of 144 × 81 rays in 24 slices, which is drawn once a frame. Compile a scene before its first frame, which else has none in its sky:
  * `await renderer.compileAsync(scene, camera)`.
  *

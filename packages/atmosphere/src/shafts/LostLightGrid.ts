@@ -1,20 +1,5 @@
 import type { RenderTarget } from 'three'
-import {
-  Fn,
-  If,
-  exp2,
-  float,
-  int,
-  log2,
-  luminance,
-  mix,
-  step,
-  texture,
-  uv,
-  vec2,
-  vec3,
-  vec4
-} from 'three/tsl'
+import { Fn, If, exp2, float, int, log2, luminance, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
@@ -29,6 +14,7 @@ import {
   type Vec4
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
+import { MAX_KEPT, MIN_LIGHT, partsOf, type LostLight } from './tsl/lostParts'
 
 /**
  * Octaves of depth by which pixels may differ and still share light, and by which they share none. Greater: halos at
@@ -38,7 +24,7 @@ const SAME_DEPTH = 0.35
 const OTHER_DEPTH = 0.8
 
 /** Octaves from a pixel's depth to that of pixels around, which are at one depth. */
-export const NEAR_MEAN = 0.2
+const NEAR_MEAN = 0.2
 
 /** Depth that marks means that are not to be used, and pixels without a thin thing: none is near it [octaves]. */
 const APART_DEPTH = 6e4
@@ -52,28 +38,11 @@ const FEW = 0.02
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
 
-/** Greatest number that the targets keep: half floats hold a little more. */
-const MAX_KEPT = 6e4
-
 /** Scale of light in the targets. */
 const LIGHT_SCALE = RADIANCE_SCALE / 8
 
 /** Greatest light that is mixed [octaves]. */
 const MAX_MIXED = Math.log2(MAX_KEPT) - 4
-
-/** Least light that other light is compared with [1/sr]. */
-const MIN_LIGHT = 1e-12
-
-/** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
-const PALE = 0.2
-
-/** Parts of the light that are lost, by colours. */
-function partsOf({ lost, lit }: LostLight): Vec3 {
-  const all = luminance(lit).max(MIN_LIGHT).toConst()
-  const isBright = vec3(step(all.mul(PALE), lit)).toConst()
-  const [taken, whole] = [mix(vec3(luminance(lost)), lost, isBright), mix(vec3(all), lit, isBright)]
-  return taken.div(whole).clamp(-MAX_KEPT, MAX_KEPT)
-}
 
 /** Place in a square of so many along its edge, from the first in each direction, by number. */
 function placeIn(index: Int, edge: Float | number): Vec2 {
@@ -81,20 +50,10 @@ function placeIn(index: Int, edge: Float | number): Vec2 {
   return vec2(float(index).sub(row.mul(edge)), row).toConst() as Vec2
 }
 
-/** Light of a ray. */
-export interface LostLight {
-  /** Light that it loses, linear sRGB of about that for unit irradiance. */
-  readonly lost: Vec3
-  /** Light of its air if nothing cast shadows, likewise. */
-  readonly lit: Vec3
-  /** log₂ of the distance to what is seen [octaves of a metre]. */
-  readonly octaves: Float
-}
-
 /** What a pixel sees. */
 export interface SeenPixel extends Pick<LostLight, 'octaves'> {
-  /** Octaves by which its distance may be off, and those of pixels around are nearer to it; null if it is exact. */
-  readonly tolerance: Float | null
+  /** Octaves by which its distance may be off, and those of pixels around are nearer to it; 0 if it is exact. */
+  readonly tolerance: number
   /** See {@link LostLight}, of a pixel so many octaves farther; asked for in a branch. */
   lit(farther: Float): Vec3
 }
@@ -103,6 +62,8 @@ export interface SeenPixel extends Pick<LostLight, 'octaves'> {
 export interface GridMarch {
   /** Light at a place in the picture, given the pixel of the grid. */
   lightAt(at: Vec2, pixel: Vec2): LostLight
+  /** Depth there, as the renderer writes it. */
+  depthAt(at: Vec2): Float
   /** log₂ of the distance to what is seen there; negative where that may be left out. */
   octavesAt(at: Vec2): Float
 }
@@ -205,31 +166,49 @@ export class LostLightGrid {
   }
 
   /**
-   * Part of the light of the pixel, about two of the grid, whose depth is farthest from those of the nine of the grid around it.
+   * Part of the light of the nearest or the farthest pixel about two of the grid, if the nine around are at no such depth.
    *
    * @param block - Column of two pixels of the grid, and row.
    */
-  #marchThin({ lightAt, octavesAt }: GridMarch, block: Vec2): Vec4 {
+  #marchThin({ lightAt, octavesAt, depthAt }: GridMarch, block: Vec2): Vec4 {
     const spacing = float(1).div(this.#density).round().toConst() as Float
+    const first = block.mul(vec2(2, 1)).toConst() as Vec2
+    const depths = vec2(2, -1).toVar() as Vec2
+    const places = vec4(0).toVar() as Vec4
+    loop('blockPixel', int(spacing.mul(spacing).mul(2)), index => {
+      const aside = placeIn(index, spacing.mul(2)).sub(spacing.div(2).floor())
+      const at = this.#placeOf(first, aside)
+      const depth = depthAt(at).toConst()
+      If(depth.lessThan(depths.x), () => {
+        depths.x.assign(depth)
+        places.xy.assign(at)
+      })
+      If(depth.greaterThan(depths.y), () => {
+        depths.y.assign(depth)
+        places.zw.assign(at)
+      })
+    })
     const farthest = float(OTHER_DEPTH).toVar()
     const place = vec2(-1).toVar() as Vec2
-    loop('blockPixel', int(spacing.mul(spacing).mul(2)), index => {
-      const inBlock = placeIn(index, spacing.mul(2))
-      const second = inBlock.x.div(spacing).floor()
-      const pixel = block.mul(vec2(2, 1)).add(vec2(second, 0)).toConst() as Vec2
-      const aside = inBlock.sub(vec2(second.mul(spacing), 0)).sub(spacing.div(2).floor())
-      const at = this.#placeOf(pixel, aside)
-      const depth = octavesAt(at).toConst()
+    for (const at of [places.xy, places.zw]) {
+      const octaves = octavesAt(at).toConst()
+      const pixel = at
+        .mul(this.#size)
+        .sub(0.4)
+        .mul(this.#density)
+        .add(0.5)
+        .floor()
+        .toConst() as Vec2
       const apart = float(APART_DEPTH).toVar()
       loop('around', 9, other => {
         const { w } = this.#texelOf(this.#parts, pixel.add(placeIn(other, 3)).sub(1))
-        apart.assign(apart.min(depth.sub(w).abs()))
+        apart.assign(apart.min(octaves.sub(w).abs()))
       })
-      If(apart.greaterThan(farthest).and(depth.greaterThan(0)), () => {
+      If(apart.greaterThan(farthest).and(octaves.greaterThan(0)), () => {
         farthest.assign(apart)
         place.assign(at)
       })
-    })
+    }
     const result = vec4(0, 0, 0, APART_DEPTH).toVar()
     If(place.x.greaterThanEqual(0), () => {
       const found = lightAt(place, block)
@@ -287,8 +266,7 @@ export class LostLightGrid {
   read(at: Vec2, { octaves: own, tolerance, lit }: SeenPixel): Vec3 {
     const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
-    const nearer = (octaves: Float): Float =>
-      tolerance === null ? float(0) : octaves.sub(own).clamp(tolerance.negate(), tolerance)
+    const nearer = (octaves: Float): Float => octaves.sub(own).clamp(-tolerance, tolerance) as Float
     const growth = this.#growth(own.add(nearer(mean.w)))
     const lost = mean.rgb.mul(growth.div(LIGHT_SCALE)).toVar() as Vec3
     If(
@@ -319,7 +297,7 @@ export class LostLightGrid {
             .div(SAME_DEPTH - OTHER_DEPTH)
           const weight = isNear.clamp(least, 1).mul(weightOf(aside)).toConst()
           sum.addAssign(vec4(other.rgb.mul(weight), weight))
-          if (tolerance) farther.addAssign(nearer(other.w).mul(weight))
+          farther.addAssign(nearer(other.w).mul(weight))
         }
         loop('neighbour', 9, index => {
           // As means have them between which one mixes.

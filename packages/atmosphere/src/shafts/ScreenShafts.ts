@@ -28,14 +28,15 @@ import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
-import { LostLightGrid, NEAR_MEAN, type LostLight } from './LostLightGrid'
+import { LostLightGrid } from './LostLightGrid'
+import type { LostLight } from './tsl/lostParts'
 import {
   isHidden,
+  isSoft,
   MIN_COVER,
   octavesOf,
   seenBy,
   sharesOf,
-  SHARP,
   type SeenShares
 } from './tsl/seenShares'
 import { shadowAt, type ShaftRay } from './tsl/shadowsAlong'
@@ -134,7 +135,8 @@ export class ScreenShafts implements ScreenShadows {
     this.grid.freePath.value = 1 / (Math.max(Math.min(...air), 1e-12) + fog)
     this.grid.render(renderer, shafts.version, {
       lightAt: (at, pixel) => this.#march(renderer, at, pixel),
-      octavesAt: at => this.#octavesAt(renderer, at)
+      octavesAt: at => this.#octavesAt(renderer, at),
+      depthAt: at => this.#rays.depthAt(at)
     })
   }
 
@@ -220,7 +222,7 @@ export class ScreenShafts implements ScreenShadows {
     const cover = kept?.transmittance.oneMinus().toConst() as Float
     const lost = this.grid.read(this.#place, {
       octaves: octavesOf(end.distance, kept),
-      tolerance: kept ? (mix(NEAR_MEAN, kept.tolerance, cover).toConst() as Float) : null,
+      tolerance: kept?.tolerance ?? 0,
       lit: farther => {
         const ray = this.#rayTo(end)
         if (kept === undefined) return this.#litAir(ray)
@@ -267,9 +269,7 @@ export class ScreenShafts implements ScreenShadows {
   #octavesAt(renderer: Renderer, at: Vec2): Float {
     const kept = this.foreground?.keptAt(at)
     const octaves = octavesOf(this.#endIn(renderer, at).distance, kept)
-    if (kept === undefined) return octaves
-    const isSoft = kept.transmittance.sub(0.5).abs().lessThan(SHARP)
-    return isSoft.select(-1, octaves)
+    return kept === undefined ? octaves : isSoft(kept).select(-1, octaves)
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */

@@ -2,7 +2,6 @@ import { fail } from '@welkin/geo'
 import { Fn, output, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
-import type { AirOptions } from '../view/AirShadows'
 import { AtmosphereNode } from '../view/AtmosphereNode'
 import { coveredPosition } from '../view/tsl/coveredPosition'
 import { aerialPerspectiveTo } from './tsl/aerialPerspective'
@@ -42,15 +41,6 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
   }
 }
 
-/**
- * Aerial perspective as a scene's fog: see {@link AerialPerspectiveFogNode}.
- *
- * @param options - `shafts` for the air and the sky of all materials: the same as `atmosphere.add(shafts)`, after all fogs.
- */
-export const aerialPerspectiveFog = (
-  atmosphere: Atmosphere,
-  { shafts }: Pick<AirOptions, 'shafts'> = {}
-): AerialPerspectiveFogNode => {
-  if (shafts) atmosphere.add(...[shafts].flat())
-  return new AerialPerspectiveFogNode(atmosphere)
-}
+/** Aerial perspective as a scene's fog: see {@link AerialPerspectiveFogNode}. */
+export const aerialPerspectiveFog = (atmosphere: Atmosphere): AerialPerspectiveFogNode =>
+  new AerialPerspectiveFogNode(atmosphere)

@@ -4,7 +4,6 @@ import { float, vec4 } from 'three/tsl'
 import { describe, expect, it, vi } from 'vitest'
 import {
   aerialPerspective,
-  aerialPerspectiveFog,
   Atmosphere,
   AtmosphereShell,
   distanceFog,
@@ -276,14 +275,6 @@ describe('what is added to light shafts', () => {
     shafts.set({ quality: 'low' }).add(occluder).set({ quality: 'high' }).remove(occluder)
     expect(home.layers).toEqual(layers)
     expect(home.layersVersion).toBeGreaterThan(layersVersion)
-  })
-
-  it('is added to the atmosphere by the fog of its materials', () => {
-    const home = new Atmosphere()
-    const shafts = lightShafts(home, camera, new SunDirectionalLight(home))
-    aerialPerspectiveFog(home, { shafts })
-    expect(home.layers).toEqual([shafts])
-    expect(() => aerialPerspectiveFog(new Atmosphere(), { shafts })).toThrow('LightShafts: atmosphere')
   })
 
   it('shares the map of a height field with the shadow on surfaces, of any light', () => {

@@ -21,10 +21,14 @@ export interface SeenShares {
 export const MIN_COVER = 0.05
 
 /** Difference of a foreground's transmittance from ½ below which its edge is soft. */
-export const SHARP = 0.48
+const SHARP = 0.48
+
+/** True at the soft edge of a foreground. */
+export const isSoft = ({ transmittance }: Pick<Foreground, 'transmittance'>): Bool =>
+  transmittance.sub(0.5).abs().lessThan(SHARP) as Bool
 
 /** log₂ of the greatest distance that is told from others where there is a foreground: farther than one sees the ground from low orbits. */
-const FAR_OCTAVES = 23
+const FAR_OCTAVES = 19
 
 /** log₂ of the distance to what is seen: between a foreground's and that of what is behind. */
 export function octavesOf(
