@@ -21,7 +21,7 @@ interface Quality {
 export const qualities = {
   low: {
     rows: 960,
-    columns: 160,
+    columns: 120,
     spacing: 10,
     groups: 2,
     samples: 3,
