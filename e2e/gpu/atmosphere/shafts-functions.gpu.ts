@@ -120,13 +120,9 @@ gpuTest(
     const grid = new LostLightGrid()
     grid.resize(width, height, 2)
     // Neighbours are at other depths, so that none are mixed.
-    grid.render(renderer, 1, {
-      lightAt: (_, pixel) => {
-        const isFar = pixel.x.add(pixel.y).mod(2).greaterThan(0.5)
-        return { lost: vec3(part), lit: vec3(1), octaves: isFar.select(13, 7).toConst() as Float }
-      },
-      octavesAt: () => float(10) as Float,
-      depthAt: () => float(1) as Float
+    grid.render(renderer, 1, (_, pixel) => {
+      const isFar = pixel.x.add(pixel.y).mod(2).greaterThan(0.5)
+      return { lost: vec3(part), lit: vec3(1), distance: isFar.select(1e4, 100).toConst() }
     })
     // Rounding puts places a little beyond the middles of the first and the last pixels.
     const places = [0.5 - 1e-4, 0.5, width / 3, width - 0.5, width - 0.5 + 1e-4].flatMap(x =>
@@ -137,9 +133,12 @@ gpuTest(
     )
     const results = await evaluateOnGpu(
       renderer,
-      places.map(([x, y]) => [x, y, 10, 0]),
+      places.map(([x, y]) => [x, y, 1000, 0]),
       ({ x, y, z }) =>
-        vec4(grid.read(vec2(x, y), { octaves: z, tolerance: 0, lit: () => vec3(2) }), 0)
+        vec4(
+          grid.read(vec2(x, y), z, () => vec3(2)),
+          0
+        )
     )
     places.forEach((at, i) => {
       expectClose(results[4 * i], 2 * part, { relative: 2e-3 }, `at ${at.join(', ')}`)

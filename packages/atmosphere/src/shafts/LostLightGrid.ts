@@ -1,10 +1,9 @@
 import type { RenderTarget } from 'three'
-import { Fn, If, exp2, float, int, log2, luminance, texture, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, float, log2, luminance, mix, step, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
 import {
-  loadTexel,
   loop,
   sampleLevel0,
   type Float,
@@ -14,7 +13,6 @@ import {
   type Vec4
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
-import { MAX_KEPT, MIN_LIGHT, partsOf, type LostLight } from './tsl/lostParts'
 
 /**
  * Octaves of depth by which pixels may differ and still share light, and by which they share none. Greater: halos at
@@ -26,17 +24,21 @@ const OTHER_DEPTH = 0.8
 /** Octaves from a pixel's depth to that of pixels around, which are at one depth. */
 const NEAR_MEAN = 0.2
 
-/** Depth that marks means that are not to be used, and pixels without a thin thing: none is near it [octaves]. */
+/** Depth that marks means of pixels at different depths: none is near it [octaves]. */
 const APART_DEPTH = 6e4
 
-/** Least weight in the bilateral upsampling: that of pixels of another depth. */
-const MIN_WEIGHT = 1e-4
+/** Summand of the depth that marks means where light is steep; and limit that marked depths are below [octaves]. */
+const STEEP_DEPTH = 64
+const STEEP_LIMIT = 128
 
-/** Weight of pixels around below which a pixel looks for its depth among those that were marched besides. */
-const FEW = 0.02
+/** Least weight in the bilateral upsampling: that of pixels of another depth. */
+const MIN_WEIGHT = 1e-3
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
+
+/** Greatest number that the targets keep: half floats hold a little more. */
+const MAX_KEPT = 6e4
 
 /** Scale of light in the targets. */
 const LIGHT_SCALE = RADIANCE_SCALE / 8
@@ -44,38 +46,47 @@ const LIGHT_SCALE = RADIANCE_SCALE / 8
 /** Greatest light that is mixed [octaves]. */
 const MAX_MIXED = Math.log2(MAX_KEPT) - 4
 
-/** Place in a square of so many along its edge, from the first in each direction, by number. */
-function placeIn(index: Int, edge: Float | number): Vec2 {
-  const row = float(index).add(0.5).div(edge).floor().toConst()
-  return vec2(float(index).sub(row.mul(edge)), row).toConst() as Vec2
+/** Least light that other light is compared with [1/sr]. */
+const MIN_LIGHT = 1e-12
+
+/** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
+const PALE = 0.2
+
+/** Summand of places in the grid, whose rounding must not put whole ones into the cell before [pixels]. */
+const ROUNDING = 1e-3
+
+/** Parts of the light that are lost, by colours. */
+function partsOf({ lost, lit }: LostLight): Vec3 {
+  const all = luminance(lit).max(MIN_LIGHT).toConst()
+  const isBright = vec3(step(all.mul(PALE), lit)).toConst()
+  const [taken, whole] = [mix(vec3(luminance(lost)), lost, isBright), mix(vec3(all), lit, isBright)]
+  return taken.div(whole).clamp(-MAX_KEPT, MAX_KEPT)
 }
 
-/** What a pixel sees. */
-export interface SeenPixel extends Pick<LostLight, 'octaves'> {
-  /** Octaves by which its distance may be off, and those of pixels around are nearer to it; 0 if it is exact. */
-  readonly tolerance: number
-  /** See {@link LostLight}, of a pixel so many octaves farther; asked for in a branch. */
-  lit(farther: Float): Vec3
+/** First or last in each direction, of four by their number. */
+function cornerOf(index: Int): Vec2 {
+  const row = float(index).div(2).floor().toConst()
+  return vec2(float(index).sub(row.mul(2)), row)
 }
 
-/** How rays of a picture are marched; called within a shader function. */
-export interface GridMarch {
-  /** Light at a place in the picture, given the pixel of the grid. */
-  lightAt(at: Vec2, pixel: Vec2): LostLight
-  /** Depth there, as the renderer writes it. */
-  depthAt(at: Vec2): Float
-  /** log₂ of the distance to what is seen there; negative where that may be left out. */
-  octavesAt(at: Vec2): Float
+/** Light of a ray. */
+export interface LostLight {
+  /** Light that it loses, linear sRGB of about that for unit irradiance. */
+  readonly lost: Vec3
+  /** Light of its air if nothing cast shadows, likewise. */
+  readonly lit: Vec3
+  /** Distance to what is seen [m]. */
+  readonly distance: Float
 }
 
 /**
  * Light that a picture's pixels lose, marched for a grid of them, then taken from those around a pixel that are at its
  * depth: from nine, of which any four that touch have samples in all places of their steps.
  *
- * A first pass marches. A second one puts three things side by side in one texture: means of the four around each corner of
- * the grid, with their depth if they may be mixed, which most pixels read once; parts of light; and, for every two pixels of
- * the grid, that of a thing about them that none around is at the depth of, such as a mast. Other pixels lose the part of their
- * own light that those around at their depth lose of theirs, with the same weights.
+ * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
+ * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of
+ * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and beside silhouettes of
+ * four at their depth.
  */
 export class LostLightGrid {
   /** Lost light with log₂ of the light that there is; its part of that with log₂ of the distance. */
@@ -115,9 +126,8 @@ export class LostLightGrid {
     const { x, y } = this.#gridSize.value.copy(this.#size.value).divideScalar(spacing).ceil()
     this.#marched.setSize(x, y)
     // A column of means more than there are corners, for pixels beyond the last of the grid.
-    const [columns, rows] = [2 * x + 2 + Math.ceil(x / 2), y + 1]
-    this.target.setSize(columns, rows)
-    const texelSize = this.#texelSize.value.set(1 / columns, 1 / rows)
+    this.target.setSize(2 * x + 2, y + 1)
+    const texelSize = this.#texelSize.value.set(1 / (2 * x + 2), 1 / (y + 1))
     this.#scale.value.copy(this.#size.value).divideScalar(spacing).multiply(texelSize)
     this.#offset.value.setScalar(1 - 0.5 / spacing).multiply(texelSize)
   }
@@ -126,126 +136,55 @@ export class LostLightGrid {
    * Draws it.
    *
    * @param version - Grows when the shader of the march changes.
+   * @param march - Light at a place in the picture, given the pixel of the grid. Called within a shader function.
    */
-  render(renderer: Renderer, version: number, march: GridMarch): void {
+  render(renderer: Renderer, version: number, march: (at: Vec2, pixel: Vec2) => LostLight): void {
     if (this.#passes.length === 0 || this.#compiled !== version) {
       for (const pass of this.#passes) pass.dispose()
       const marched = outputs<[Vec4, Vec4]>(2, ([lostOut, partsOut]) => {
-        const pixel = this.#pixel
-        const found = march.lightAt(this.#placeOf(pixel, vec2(0)), pixel)
-        const { lost, lit, octaves } = found
-        const scale = float(LIGHT_SCALE).div(this.#growth(octaves)).toConst()
+        const pixel = uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
+        const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
+        const found = march(at, pixel)
+        const { lost, lit, distance } = found
+        const scale = float(LIGHT_SCALE).div(this.#growth(distance)).toConst()
         const light = log2(luminance(lit).max(MIN_LIGHT).mul(scale))
         lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), light))
-        partsOut.assign(vec4(partsOf(found), octaves))
+        partsOut.assign(vec4(partsOf(found), log2(distance)))
       })
-      this.#passes = [marched, Fn(() => this.#arrange(march))()].map(
+      this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
       )
       this.#compiled = version
     }
-    for (const [i, target] of [this.#marched, this.target].entries()) {
-      this.#passes[i].render(renderer, target)
-    }
+    this.#passes[0].render(renderer, this.#marched)
+    this.#passes[1].render(renderer, this.target)
   }
 
-  /** Pixel of the grid that is drawn. */
-  get #pixel(): Vec2 {
-    return uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
-  }
-
-  /** Place in the picture of a pixel of the grid, or some pixels of the picture aside. */
-  #placeOf(pixel: Vec2, aside: Vec2): Vec2 {
-    const at = pixel.div(this.#density).add(aside).add(0.5).div(this.#size)
-    return at.clamp(vec2(0), vec2(1)).toConst() as Vec2
-  }
-
-  /** A texel of the grid, or the nearest of its edge: not filtered, which would mix in a little of those beside it. */
-  #texelOf(source: TextureNode, pixel: Vec2): Vec4 {
-    return loadTexel(source, pixel.clamp(vec2(0), this.#gridSize.sub(1))).toConst()
-  }
-
-  /**
-   * Part of the light of the nearest or the farthest pixel about two of the grid, if the nine around are at no such depth.
-   *
-   * @param block - Column of two pixels of the grid, and row.
-   */
-  #marchThin({ lightAt, octavesAt, depthAt }: GridMarch, block: Vec2): Vec4 {
-    const spacing = float(1).div(this.#density).round().toConst() as Float
-    const first = block.mul(vec2(2, 1)).toConst() as Vec2
-    const depths = vec2(2, -1).toVar() as Vec2
-    const places = vec4(0).toVar() as Vec4
-    loop('blockPixel', int(spacing.mul(spacing).mul(2)), index => {
-      const aside = placeIn(index, spacing.mul(2)).sub(spacing.div(2).floor())
-      const at = this.#placeOf(first, aside)
-      const depth = depthAt(at).toConst()
-      If(depth.lessThan(depths.x), () => {
-        depths.x.assign(depth)
-        places.xy.assign(at)
-      })
-      If(depth.greaterThan(depths.y), () => {
-        depths.y.assign(depth)
-        places.zw.assign(at)
-      })
-    })
-    const farthest = float(OTHER_DEPTH).toVar()
-    const place = vec2(-1).toVar() as Vec2
-    for (const at of [places.xy, places.zw]) {
-      const octaves = octavesAt(at).toConst()
-      const pixel = at
-        .mul(this.#size)
-        .sub(0.4)
-        .mul(this.#density)
-        .add(0.5)
-        .floor()
-        .toConst() as Vec2
-      const apart = float(APART_DEPTH).toVar()
-      loop('around', 9, other => {
-        const { w } = this.#texelOf(this.#parts, pixel.add(placeIn(other, 3)).sub(1))
-        apart.assign(apart.min(octaves.sub(w).abs()))
-      })
-      If(apart.greaterThan(farthest).and(octaves.greaterThan(0)), () => {
-        farthest.assign(apart)
-        place.assign(at)
-      })
-    }
-    const result = vec4(0, 0, 0, APART_DEPTH).toVar()
-    If(place.x.greaterThanEqual(0), () => {
-      const found = lightAt(place, block)
-      result.assign(vec4(partsOf(found), found.octaves))
-    })
-    return result
-  }
-
-  /** A texel of the target: the mean of the four pixels about a corner of the grid, a pixel's part, or a thin thing's. */
-  #arrange(march: GridMarch): Vec4 {
+  /** A texel of the target: the mean of the four pixels about a corner of the grid, or a pixel's part. */
+  #arrange(): Vec4 {
     const size = this.#gridSize
     const texel = uv().div(this.#texelSize).floor().toConst() as unknown as Vec2
     const result = vec4(0).toVar()
-    const pixel = texel.sub(vec2(size.x.add(2), 0)).toConst() as Vec2
-    If(pixel.x.greaterThan(size.x.sub(0.5)), () => {
-      result.assign(this.#marchThin(march, pixel.sub(vec2(size.x, 0)).toConst() as Vec2))
+    const read = (source: TextureNode, place: Vec2): Vec4 =>
+      sampleLevel0(source, place.clamp(vec2(0.5), size.sub(0.5)).div(size)).toConst()
+    If(texel.x.greaterThan(size.x.add(1.5)), () => {
+      result.assign(read(this.#parts, texel.sub(vec2(size.x.add(1.5), -0.5)).toConst()))
+    }).Else(() => {
+      const least = vec2(APART_DEPTH).toVar()
+      const most = vec2(-APART_DEPTH).toVar()
+      loop('corner', 4, index => {
+        const at = texel.add(cornerOf(index)).sub(0.5).toConst() as Vec2
+        const [lost, parts] = [read(this.#lost, at), read(this.#parts, at)]
+        result.addAssign(vec4(lost.rgb, parts.w).mul(0.25))
+        const both = vec2(parts.w, lost.w).toConst()
+        least.assign(least.min(both))
+        most.assign(most.max(both))
+      })
+      const apart = most.sub(least).toConst()
+      const isMixed = apart.y.lessThan(MIXED_OCTAVES).and(most.y.lessThan(MAX_MIXED))
+      const depth = result.w.add(isMixed.select(0, STEEP_DEPTH))
+      result.w.assign(apart.x.lessThan(SAME_DEPTH).select(depth, APART_DEPTH))
     })
-      .ElseIf(pixel.x.greaterThan(-0.5), () => {
-        result.assign(this.#texelOf(this.#parts, pixel))
-      })
-      .Else(() => {
-        const least = vec2(APART_DEPTH).toVar()
-        const most = vec2(-APART_DEPTH).toVar()
-        loop('corner', 4, index => {
-          const around = texel.sub(1).add(placeIn(index, 2)).toConst() as Vec2
-          const lost = this.#texelOf(this.#lost, around)
-          const parts = this.#texelOf(this.#parts, around)
-          result.addAssign(vec4(lost.rgb, parts.w).mul(0.25))
-          const both = vec2(parts.w, lost.w).toConst()
-          least.assign(least.min(both))
-          most.assign(most.max(both))
-        })
-        const apart = most.sub(least).toConst()
-        const isMixed = apart.y.lessThan(MIXED_OCTAVES).and(most.y.lessThan(MAX_MIXED))
-        const isUsed = isMixed.and(apart.x.lessThan(SAME_DEPTH))
-        result.w.assign(isUsed.select(result.w, APART_DEPTH))
-      })
     return result
   }
 
@@ -253,8 +192,7 @@ export class LostLightGrid {
    * Growth of the light of air with distance, about as that of even air: light over it is about the same for pixels
    * whose distances differ a little, and is what they share.
    */
-  #growth(octaves: Float): Float {
-    const distance = exp2(octaves).toConst()
+  #growth(distance: Float): Float {
     return distance.div(distance.add(this.freePath))
   }
 
@@ -262,55 +200,39 @@ export class LostLightGrid {
    * Light that a pixel loses, as {@link LostLight} has it.
    *
    * @param at - Its place in the picture.
+   * @param lit - See {@link LostLight}; asked for in a branch.
    */
-  read(at: Vec2, { octaves: own, tolerance, lit }: SeenPixel): Vec3 {
+  read(at: Vec2, distance: Float, lit: () => Vec3): Vec3 {
+    const own = log2(distance).toConst() as Float
     const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
-    const nearer = (octaves: Float): Float => octaves.sub(own).clamp(-tolerance, tolerance) as Float
-    const growth = this.#growth(own.add(nearer(mean.w)))
-    const lost = mean.rgb.mul(growth.div(LIGHT_SCALE)).toVar() as Vec3
-    If(
-      own
-        .sub(mean.w)
-        .abs()
-        .greaterThan(tolerance ?? NEAR_MEAN),
-      () => {
-        const size = this.#gridSize
-        const place = middle.div(this.#texelSize).sub(0.5).toConst()
-        const nearest = place.floor().toConst() as Vec2
-        const towards = place.sub(nearest).sub(0.5).toConst()
-        const sum = vec4(0).toVar()
-        const farther = float(0).toVar()
-        // Parts follow means, and those of thin things follow them.
-        const add = (index: Int, weightOf: (aside: Vec2) => Float, least: number): void => {
-          const aside = placeIn(index.mod(9) as Int, 3)
-            .sub(1)
-            .toConst() as Vec2
-          const pixel = nearest.add(aside).clamp(vec2(0), size.sub(1)).toConst() as Vec2
-          const isThin = float(index.div(9)).toConst() as Float
-          const x = pixel.x.div(isThin.add(1)).floor().add(isThin.add(1).mul(size.x)).add(2)
-          const other = loadTexel(this.#texels, vec2(x, pixel.y)).toConst()
-          const isNear = other.w
-            .sub(own)
-            .abs()
-            .sub(OTHER_DEPTH)
-            .div(SAME_DEPTH - OTHER_DEPTH)
-          const weight = isNear.clamp(least, 1).mul(weightOf(aside)).toConst()
-          sum.addAssign(vec4(other.rgb.mul(weight), weight))
-          farther.addAssign(nearer(other.w).mul(weight))
-        }
-        loop('neighbour', 9, index => {
-          // As means have them between which one mixes.
-          const weightOf = (aside: Vec2): Float => {
-            const mixed = aside.mul(towards).add(0.5).div(aside.abs().add(1)).toConst()
-            return mixed.x.mul(mixed.y)
-          }
-          add(index, weightOf, MIN_WEIGHT)
-        })
-        If(sum.w.lessThan(FEW), () => loop('other', 18, index => add(index, () => float(1), 0)))
-        lost.assign(lit(farther.div(sum.w)).mul(sum.rgb.div(sum.w)))
-      }
-    )
+    const lost = mean.rgb.mul(this.#growth(distance).div(LIGHT_SCALE)).toVar() as Vec3
+    If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN), () => {
+      const size = this.#gridSize
+      const place = middle
+        .div(this.#texelSize)
+        .sub(1 - ROUNDING)
+        .toConst() as Vec2
+      const isSteep = mean.w.lessThan(STEEP_LIMIT)
+      const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
+      const weights = float(0).toVar()
+      lost.assign(vec3(0))
+      loop('corner', 4, index => {
+        const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
+        const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
+        const other = sampleLevel0(this.#texels, at).toConst()
+        const weight = other.w
+          .sub(own)
+          .abs()
+          .sub(OTHER_DEPTH)
+          .div(SAME_DEPTH - OTHER_DEPTH)
+          .clamp(MIN_WEIGHT, 1)
+          .toConst()
+        lost.addAssign(other.rgb.mul(weight))
+        weights.addAssign(weight)
+      })
+      lost.mulAssign(lit().div(weights))
+    })
     return lost
   }
 

@@ -1,18 +1,5 @@
 import { Vector2 } from 'three'
-import {
-  Fn,
-  If,
-  bool,
-  exp2,
-  float,
-  log2,
-  mix,
-  screenCoordinate,
-  screenUV,
-  uv,
-  vec3,
-  vec4
-} from 'three/tsl'
+import { Fn, If, bool, float, mix, screenCoordinate, screenUV, uv, vec3, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, NodeMaterial, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
@@ -28,21 +15,14 @@ import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
-import { LostLightGrid } from './LostLightGrid'
-import type { LostLight } from './tsl/lostParts'
-import {
-  isHidden,
-  isSoft,
-  MIN_COVER,
-  octavesOf,
-  seenBy,
-  sharesOf,
-  type SeenShares
-} from './tsl/seenShares'
+import { LostLightGrid, type LostLight } from './LostLightGrid'
 import { shadowAt, type ShaftRay } from './tsl/shadowsAlong'
-import { distanceOf } from './tsl/without'
+import { distanceOf, FAR } from './tsl/without'
 import { screenRay } from '../view/tsl/screenRay'
 import { DepthRays } from '../view/DepthRays'
+
+/** Transmittance below which a foreground layer hides what is behind it. Greater: shafts end at thin clouds (*Below a broken deck*). */
+const MIN_TRANSMITTANCE = 0.01
 
 /** Samples of the shadow between two points of a mesh's ray. Fewer: grain at the edges of shadows, by orthographic cameras. */
 const MESH_SAMPLES = 6
@@ -133,11 +113,7 @@ export class ScreenShafts implements ScreenShadows {
     const most = Math.max(...lookUp.uniforms.linearSRGB.map(({ value }) => value.y))
     this.#gain.value = Math.max(most, 1e-30) * Math.max(...source.irradiance.value.toArray(), 1e-30)
     this.grid.freePath.value = 1 / (Math.max(Math.min(...air), 1e-12) + fog)
-    this.grid.render(renderer, shafts.version, {
-      lightAt: (at, pixel) => this.#march(renderer, at, pixel),
-      octavesAt: at => this.#octavesAt(renderer, at),
-      depthAt: at => this.#rays.depthAt(at)
-    })
+    this.grid.render(renderer, shafts.version, (at, pixel) => this.#march(renderer, at, pixel))
   }
 
   update(view: AtmosphereView): void {
@@ -218,19 +194,7 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   #lostUpTo(end: RayEnd): Vec3 {
-    const kept = this.foreground?.keptAt(this.#place)
-    const cover = kept?.transmittance.oneMinus().toConst() as Float
-    const lost = this.grid.read(this.#place, {
-      octaves: octavesOf(end.distance, kept),
-      tolerance: kept?.tolerance ?? 0,
-      lit: farther => {
-        const ray = this.#rayTo(end)
-        if (kept === undefined) return this.#litAir(ray)
-        const off = farther.div(cover.max(MIN_COVER)).clamp(-kept.tolerance, kept.tolerance)
-        const distance = exp2(kept.octaves.add(off)).toConst() as Float
-        return this.#litAir(ray, sharesOf({ ...kept, distance }, this.#isForward))
-      }
-    })
+    const lost = this.grid.read(this.#place, end.distance, () => this.#litAir(this.#rayTo(end)))
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -251,25 +215,27 @@ export class ScreenShafts implements ScreenShadows {
     return left
   }
 
+  /** Part of the light from a distance that the picture has, and the distance beyond which it has none [m]. */
+  #seen(at: Vec2): { seenFrom?: (distance: Float) => Float; most: Float } {
+    if (this.foreground === undefined) return { most: float(FAR) }
+    const { distance, transmittance } = this.foreground.seenAt(at)
+    // Behind the foreground the shadows of materials are dimmed with them.
+    const before = transmittance.mul(this.#isForward).oneMinus().toConst() as Float
+    const behind = transmittance.mul(this.#isForward.oneMinus()).toConst() as Float
+    return {
+      seenFrom: from => from.lessThan(distance).select(before, behind),
+      most: behind.greaterThan(MIN_TRANSMITTANCE).select(FAR, distance).toConst()
+    }
+  }
+
   /** Light that the ray of a pixel of the grid loses. */
   #march(renderer: Renderer, at: Vec2, pixel: Vec2): LostLight {
     const { view, shadowedAir, steps } = this.#shafts
     const ray = this.#rayTo(this.#endIn(renderer, at))
-    const front = this.foreground?.seenAt(at)
-    const shares = front && sharesOf(front, this.#isForward)
-    const lost = lostLight(view, shadowedAir, seenBy(ray, shares), steps, staggered(pixel))
-    const octaves = octavesOf(
-      ray.distance,
-      front && { octaves: log2(front.distance), transmittance: front.transmittance }
-    )
-    return { lost: this.#color(lost), lit: this.#litAir(ray, shares), octaves }
-  }
-
-  /** log₂ of the distance to what is seen; −1 at the soft edge of a foreground. */
-  #octavesAt(renderer: Renderer, at: Vec2): Float {
-    const kept = this.foreground?.keptAt(at)
-    const octaves = octavesOf(this.#endIn(renderer, at).distance, kept)
-    return kept === undefined ? octaves : isSoft(kept).select(-1, octaves)
+    const { seenFrom, most } = this.#seen(at)
+    const seen = { ...ray, distance: ray.distance.min(most).toConst() as Float, seenFrom }
+    const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
+    return { lost: this.#color(lost), lit: this.#litAir(ray), distance: ray.distance }
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
@@ -306,22 +272,8 @@ export class ScreenShafts implements ScreenShadows {
     return unclampedSRGB(air.uniforms, light.mul(source.irradiance)).div(this.#gain).toConst()
   }
 
-  /** Light of the air on a ray without shadows, as far as it is seen, as the grid keeps it. */
-  #litAir(ray: ShaftRay, shares?: SeenShares): Vec3 {
-    if (shares === undefined) return this.#color(this.#litTo(ray))
-    const { before, behind } = shares
-    const distance = ray.distance.min(shares.distance).toConst() as Float
-    const light = this.#litTo({ ...ray, distance })
-      .mul(before.sub(behind))
-      .toVar() as Vec4
-    If(isHidden(shares).not(), () => {
-      light.addAssign(this.#litTo(ray).mul(behind))
-    })
-    return this.#color(light)
-  }
-
-  /** Light of the air on a ray without shadows, for unit irradiance [1/sr]. */
-  #litTo(ray: ShaftRay): Vec4 {
+  /** Light of the air on a ray without shadows, as the grid keeps it. */
+  #litAir(ray: ShaftRay): Vec3 {
     const { cosView, cosViewLight, distance } = ray
     const { air, volume, viewpoint } = this.#shafts.view
     const limits = rayLimits(viewpoint, cosView)
@@ -334,7 +286,7 @@ export class ScreenShafts implements ScreenShadows {
         light.assign(light.mul(transmittance).add(singleScattered))
       }
     })
-    return light
+    return this.#color(light)
   }
 
   /** Takes them out of the shafts of their camera, until they are drawn again. */

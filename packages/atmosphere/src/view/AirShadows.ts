@@ -18,8 +18,6 @@ export interface ForegroundLayer {
    * @param at - Place in the picture, as texture coordinates.
    */
   seenAt(at: Vec2): { distance: Float; transmittance: Float }
-  /** The same as it is kept for each pixel: log₂ of the distance, and by how much that may be off. */
-  keptAt(at: Vec2): { octaves: Float; tolerance: number; transmittance: Float }
 }
 
 /** Shadows in the air of a picture. */

@@ -205,8 +205,7 @@ describe('what is added to light shafts', () => {
         drawn++
         return true
       },
-      seenAt: () => ({ distance: float(1), transmittance: float(1) }),
-      keptAt: () => ({ octaves: float(0), tolerance: 0, transmittance: float(1) })
+      seenAt: () => ({ distance: float(1), transmittance: float(1) })
     }
     for (let i = 0; i < 3; i++) {
       const screen = shafts.upTo(float(1), foreground) as ScreenShafts

@@ -2,7 +2,8 @@ import type { ForegroundLayer } from '@welkin/atmosphere'
 import { exp2 } from 'three/tsl'
 import type { CloudsNode } from '../march/CloudsNode'
 import { DISTANCE_STEP, unpack } from '../temporal/tsl/packing'
-import type { Float, Vec2 } from '../tsl-types'
+import type { CloudTargets } from '../temporal/tsl/renderTargets'
+import type { Float, Vec2, Vec4 } from '../tsl-types'
 
 /** Greatest difference of a marched distance from history's [steps of packed distances]. */
 const NEARBY = 0.6
@@ -21,23 +22,21 @@ export class CloudForeground implements ForegroundLayer {
     return !this.isRemoved && !this.#clouds.isDisposed
   }
 
-  keptAt(at: Vec2): { octaves: Float; tolerance: number; transmittance: Float } {
-    const { light, distances } = this.#clouds.passes.accumulated
-    return {
-      octaves: unpack(distances.sample(at).level(0).toConst()).x,
-      tolerance: NEARBY * DISTANCE_STEP,
-      transmittance: light.sample(at).level(0).a.toConst()
-    }
-  }
-
   seenAt(at: Vec2): { distance: Float; transmittance: Float } {
-    const { marched, viewRays } = this.#clouds.passes
+    const { accumulated, marched, viewRays } = this.#clouds.passes
     const { frame } = viewRays
-    const { octaves, tolerance, transmittance } = this.keptAt(at)
+    const read = ({ distances }: CloudTargets, place: Vec2): Vec4 =>
+      distances.sample(place).level(0).toConst()
+    const accumulatedDistance = unpack(read(accumulated, at)).x
     // History's distances are bytes, whose steps would show in haze; marched ones are smooth, but of pixels nearby.
     const block = at.mul(frame.size).sub(frame.jitter).sub(0.5).div(frame.block).add(0.5)
-    const near = marched.distances.sample(block.div(frame.marchedSize).toConst()).level(0).x
-    const distance = exp2(near.clamp(octaves.sub(tolerance), octaves.add(tolerance))).toConst()
-    return { distance, transmittance }
+    const marchedDistance = read(marched, block.div(frame.marchedSize).toConst()).x
+    const tolerance = NEARBY * DISTANCE_STEP
+    const least = accumulatedDistance.sub(tolerance)
+    const most = accumulatedDistance.add(tolerance)
+    return {
+      distance: exp2(marchedDistance.clamp(least, most)).toConst(),
+      transmittance: accumulated.light.sample(at).level(0).a.toConst()
+    }
   }
 }
