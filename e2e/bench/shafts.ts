@@ -2,6 +2,7 @@ import {
   aerialPerspective,
   aerialPerspectiveFog,
   Atmosphere,
+  heightFog,
   lightShafts,
   skyBackground,
   SunDirectionalLight,
@@ -38,13 +39,15 @@ export interface ShaftCost {
   cascades: number
   /** Cumulus over the city, which cast into the air, too. */
   withClouds: boolean
+  /** Height fog over the city, in which shafts fall, too. */
+  withFog?: boolean
   quality: LightShaftsQuality
   withoutMs: number
   shaftsMs: number
 }
 
 /** A city, as it is drawn. */
-type CityOptions = Pick<ShaftCost, 'path' | 'cascades' | 'withClouds'> & {
+type CityOptions = Pick<ShaftCost, 'path' | 'cascades' | 'withClouds' | 'withFog'> & {
   /** Quality of light shafts; null for none. */
   quality: LightShaftsQuality | null
 }
@@ -56,10 +59,11 @@ const shared = { noise: new CloudNoise(), light: new CloudLightTable() }
 function city(
   renderer: WebGPURenderer,
   size: readonly [number, number],
-  { path, cascades, withClouds, quality }: CityOptions
+  { path, cascades, withClouds, withFog, quality }: CityOptions
 ): { draw: () => void; dispose: () => void } {
   renderer.shadowMap.enabled = true
   const atmosphere = new Atmosphere().setSunAngles(12, 20)
+  if (withFog) atmosphere.add(heightFog({ density: 1e-3, falloff: 150 }))
   const scene = new Scene()
   const camera = new PerspectiveCamera(60, size[0] / size[1], 0.5, 20_000)
   camera.position.set(20, 2, 500)
@@ -146,7 +150,9 @@ const cases = [
   { path: 'post', cascades: 4, withClouds: false },
   { path: 'post', cascades: 4, withClouds: true },
   { path: 'forward', cascades: 1, withClouds: false },
-  { path: 'forward', cascades: 4, withClouds: false }
+  { path: 'post', cascades: 4, withClouds: false, withFog: true },
+  { path: 'forward', cascades: 4, withClouds: false },
+  { path: 'forward', cascades: 4, withClouds: false, withFog: true }
 ] as const
 
 /** Times light shafts of one shadow map and of four cascades, and under clouds. */
@@ -168,8 +174,9 @@ export async function timeShafts(
 
 /** A line of a report. */
 export const shaftLine = (cost: ShaftCost): string => {
-  const { path, cascades, withClouds, quality, withoutMs, shaftsMs } = cost
-  const casters = `${cascades === 1 ? 'one map' : `${cascades} cascades`}${withClouds ? ', clouds' : ''}`
+  const { path, cascades, withClouds, withFog, quality, withoutMs, shaftsMs } = cost
+  const maps = cascades === 1 ? 'one map' : `${cascades} cascades`
+  const casters = `${maps}${withClouds ? ', clouds' : ''}${withFog ? ', fog' : ''}`
   return (
     `${path.padEnd(8)} light shafts, ${casters}, ${quality.padEnd(7)}` +
     ` ${shaftsMs.toFixed(3)} ms   (without ${withoutMs.toFixed(3)} ms)`

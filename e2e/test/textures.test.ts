@@ -200,6 +200,14 @@ it('features of the clouds sample as many textures as their README says', async 
   const lit = await inLit(() => undefined)
   const withClouds = await inPass(world => world.clouds())
   expect([`${withClouds - air}`, '0']).toEqual(stated('clouds', '`clouds`'))
+  const shafted = await inPass(world => {
+    const { atmosphere, camera, sun } = world
+    sun.castShadow = true
+    const node = world.clouds()
+    lightShafts(atmosphere, camera, sun).add(cloudAirShadow(node))
+    return node
+  })
+  expect(`${shafted - withClouds}`).toBe(stated('clouds', '`lightShafts` that clouds')[0])
   for (const worldMap of [null, picture()]) {
     const shaded = await inLit(world => {
       const { sun } = world

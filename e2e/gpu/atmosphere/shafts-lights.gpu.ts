@@ -7,7 +7,8 @@ import {
   MoonDirectionalLight,
   skyBackground,
   type AirOccluder,
-  type LightShafts
+  type LightShafts,
+  type LightShaftsQuality
 } from '@welkin/atmosphere'
 import { FloatType, Scene } from 'three'
 import { float, pass } from 'three/tsl'
@@ -190,16 +191,16 @@ gpuTest('has materials draw two cameras in a frame as they draw each alone', asy
 const MEMORY = 10e6
 
 gpuTest(
-  'takes up to 10 MB for a picture of 1920×1080',
+  'takes up to 10 MB for each light in a picture of 1920×1080, at any quality',
   async t => {
     const renderer = await t.createRenderer({ width: 1920, height: 1080 })
-    const sizes: Record<string, number> = {}
-    for (const path of ['none', 'post effect', 'materials'] as const) {
-      const set = stage(renderer, 15, path === 'post effect' ? {} : null)
+    const sizeOf = async (path: string, quality: LightShaftsQuality): Promise<number> => {
+      const set = stage(renderer, 15, path === 'post effect' ? { quality } : null)
       const { scene, camera, atmosphere, shafts } = set
       const tower = addBox(scene, [0, 200, -600], [200, 500, 40])
       tower.receiveShadow = false
       if (path === 'materials') {
+        shafts.set({ quality })
         atmosphere.add(shafts)
         camera.updateMatrixWorld()
         await nextFrame()
@@ -207,13 +208,17 @@ gpuTest(
       }
       await set.draw()
       expectTrue(path === 'none' || shafts.isActive, 'shafts are drawn')
-      sizes[path] = renderer.info.memory.texturesSize
+      const size = renderer.info.memory.texturesSize
       set.dispose()
+      return size
     }
-    for (const path of ['post effect', 'materials'] as const) {
-      const bytes = sizes[path] - sizes.none
-      t.note(`${path} ${(bytes / 1e6).toFixed(2)} MB`)
-      expectTrue(bytes > 1e6 && bytes <= MEMORY, `${path} takes ${bytes} B`)
+    const none = await sizeOf('none', 'medium')
+    for (const path of ['post effect', 'materials']) {
+      for (const quality of ['low', 'medium', 'high'] as const) {
+        const bytes = (await sizeOf(path, quality)) - none
+        t.note(`${path}, ${quality}: ${(bytes / 1e6).toFixed(2)} MB`)
+        expectTrue(bytes > 1e6 && bytes <= MEMORY, `${path} takes ${bytes} B at ${quality}`)
+      }
     }
   },
   // The same targets on both.

@@ -191,6 +191,11 @@ export class Terrain extends SeaMesh {
     return { count, capacity: atlas.capacity, drawn, bytes: atlas.bytes }
   }
 
+  /** Counts up whenever heights of the ground have changed, as when some have arrived. */
+  get version(): number {
+    return this.source.version ?? 0
+  }
+
   /** Number of tiles chosen last, and of those in view. */
   get tileCount(): { chosen: number; inView: number } {
     const { tiles, inView } = this.#tiles.selection

@@ -69,6 +69,8 @@ export interface AirShadow {
    * less under clouds that are thick, more under thin ones and above them. Left out, 1.
    */
   diffuse?(point: AirPoint): Vec4
+  /** Frees what it has drawn, which is drawn again at the next `update`: called when the shafts are disposed of. */
+  free?(): void
   /** Called when it is taken out. */
   dispose?(): void
 }

@@ -36,6 +36,11 @@ export class CastShadows {
     }
   }
 
+  /** Frees what they have drawn. */
+  free(): void {
+    for (const shadow of this.all) shadow.free?.()
+  }
+
   /** Sets uniforms, and draws tables, for a camera's air. @returns True if any shadow is cast. */
   update(view: AtmosphereView, renderer: Renderer): boolean {
     return this.all.reduce((isCast, shadow) => {

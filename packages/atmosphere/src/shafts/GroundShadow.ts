@@ -3,6 +3,7 @@ import {
   DataUtils,
   HalfFloatType,
   LinearFilter,
+  MathUtils,
   Matrix4,
   RedFormat,
   Vector3
@@ -28,6 +29,8 @@ export interface GroundShadowOptions {
 export interface ShadowingGround {
   /** Height of the ground below a point of the world, above the ellipsoid [m]. */
   heightBelow(position: Vector3): number
+  /** Counts up whenever heights have changed, such as those that were loaded; left out, they never do. */
+  readonly version?: number
 }
 
 const DEFAULTS: Required<GroundShadowOptions> = { width: 1e5, texels: 256, size: 512 }
@@ -40,6 +43,13 @@ const MAX_DISTANCE = 1 / 8
 
 /** Rows of heights found in a frame while another square is made. */
 const ROWS_PER_FRAME = 2
+
+/** Distance of a camera from the middle of its square beyond which it has leapt [edges of the square]. */
+const LEAP = 3 / 8
+
+/** Heights along the edge of the square that is made first after a leap, and how many are found in a frame: in four frames. */
+const COARSE = 64
+const COARSE_PER_FRAME = COARSE ** 2 / 4
 
 /** Squares of cameras far apart that there may be at once. */
 const MAX_SQUARES = 4
@@ -54,6 +64,32 @@ const _world = new Vector3()
 const _toWorld = new Matrix4()
 
 /**
+ * Spreads a square of heights over more texels, linearly between the middles of its cells and on to its edges.
+ *
+ * @param target - Half floats.
+ */
+function spread(heights: Float32Array, target: Uint16Array): void {
+  const [side, texels] = [heights, target].map(({ length }) => Math.sqrt(length))
+  const cellOf = (texel: number): { first: number; part: number } => {
+    const place = ((texel + 0.5) / texels) * side - 0.5
+    const first = MathUtils.clamp(Math.floor(place), 0, side - 2)
+    return { first, part: place - first }
+  }
+  const columns = Array.from({ length: texels }, (_, i) => cellOf(i))
+  for (let row = 0; row < texels; row++) {
+    const { first: south, part: north } = cellOf(row)
+    columns.forEach(({ first, part }, column) => {
+      const at = south * side + first
+      const [lower, upper] = [at, at + side].map(i =>
+        MathUtils.lerp(heights[i], heights[i + 1], part)
+      )
+      const height = MathUtils.lerp(lower, upper, north)
+      target[row * texels + column] = DataUtils.toHalfFloat(height)
+    })
+  }
+}
+
+/**
  * Shadows of mountains, however far they reach, on the ground and in the air: a {@link HeightFieldShadow} of the ground about
  * the camera, which it follows by itself.
  *
@@ -63,9 +99,9 @@ const _toWorld = new Matrix4()
  * Object.assign(sun.shadow, { shadowNode: terrainShadow(mountains, sun, shadow(sun)) })
  * ```
  *
- * The planet's curvature is in it. As the camera moves by an eighth of the width, the ground is asked for the heights of
- * another square, two rows a frame, and the square changes once it is whole. The first is made at once: a quarter of a
- * second with mountains from noise. Cameras an eighth of the width apart have squares of their own, of which there are
+ * The planet's curvature is in it. As the camera moves by an eighth of the width, or the ground's `version` grows, the ground is
+ * asked for the heights of another square, two rows a frame, and the square changes once it is whole. After a leap there is a
+ * coarse one in four frames. The first is made at once: a quarter of a second with mountains from noise. Cameras an eighth of the width apart have squares of their own, of which there are
  * up to four; others take the place of the one that was not used for longest.
  */
 export class GroundShadow extends HeightFieldShadow {
@@ -83,6 +119,11 @@ export class GroundShadow extends HeightFieldShadow {
   #next: Uint16Array
   #found = 0
   readonly #axes = new Matrix4()
+  /** Heights of the next square while that is a coarse one. */
+  #coarse: Float32Array | null = null
+  /** Frame of the last search, and version of the ground that the next square is of. */
+  #frame: number | undefined
+  #groundVersion: number | undefined
   /** The square in use, from its texture coordinates and heights to ECEF [m]. */
   readonly #square = new Matrix4()
   /** Its middle, on the ellipsoid, ECEF [m]. */
@@ -124,31 +165,35 @@ export class GroundShadow extends HeightFieldShadow {
     this.#next = new Uint16Array(texels ** 2)
   }
 
-  /** Square of a camera, which follows it: its own, or that of another camera nearby. */
-  override fieldOf(camera: Camera): GroundShadow {
+  /**
+   * Square of a camera, which follows it: its own, or that of another camera nearby.
+   *
+   * @param frame - Number of the frame, in which heights are sought once; left out, at each call.
+   */
+  override fieldOf(camera: Camera, frame?: number): GroundShadow {
     _position.setFromMatrixPosition(camera.matrixWorld)
     this.#uses++
     const square = this.#squareOf(camera)
     if (square.#camera !== camera && this.#isIdle(square)) square.#camera = camera
     if (square.#camera === camera) {
       square.#used = this.#uses
-      square.follow(_position)
+      square.follow(_position, frame)
     } else square.#place()
     return square
   }
 
   /** Square of a camera at `_position`; of those whose camera is gone one that is near comes first. */
   #squareOf(camera: Camera): GroundShadow {
-    const squares = [this, ...this.#others].toSorted((a, b) => a.#used - b.#used)
+    const squares = [this, ...this.#others]
+    const own = squares.find(square => square.#camera === camera)
+    if (own !== undefined) return own
     const { atmosphere, ground, width, texels, size } = this
     _subpoint.copy(_position).applyMatrix4(atmosphere.worldToECEF)
     atmosphere.ellipsoid.footPoint(_subpoint, _subpoint)
     const isNear = (square: GroundShadow): boolean =>
       square.#subpoint.distanceTo(_subpoint) < MAX_DISTANCE * width
-    const found =
-      squares.find(square => square.#camera === camera) ??
-      squares.find(isNear) ??
-      squares.find(square => this.#isIdle(square))
+    squares.sort((a, b) => a.#used - b.#used)
+    const found = squares.find(isNear) ?? squares.find(square => this.#isIdle(square))
     if (found !== undefined) return found
     if (squares.length === MAX_SQUARES) {
       squares[0].#camera = null
@@ -167,9 +212,11 @@ export class GroundShadow extends HeightFieldShadow {
    * Moves on with a viewer, and with the world's origin.
    *
    * @param position - World [units].
+   * @param frame - As of {@link fieldOf}.
    */
-  follow(position: Vector3): void {
-    this.#find(position)
+  follow(position: Vector3, frame?: number): void {
+    if (frame === undefined || frame !== this.#frame) this.#find(position)
+    this.#frame = frame
     this.#place()
   }
 
@@ -180,22 +227,39 @@ export class GroundShadow extends HeightFieldShadow {
     }
   }
 
-  /** Finds some heights of the next square, once the camera is far from the middle of the one in use. */
+  /** Finds some heights of the next square, once the camera is far from the middle of the one in use or the ground has changed. */
   #find(position: Vector3): void {
     const { atmosphere, width, texels } = this
     const subpoint = this.#subpoint.copy(position).applyMatrix4(atmosphere.worldToECEF)
     atmosphere.ellipsoid.footPoint(subpoint, subpoint)
-    if (this.#found === 0) {
-      if (subpoint.distanceTo(this.#middle) < MAX_DISTANCE * width) return
-      atmosphere.ellipsoid.eastNorthUpFrame(subpoint, this.#axes)
-    }
     const isFirst = Number.isNaN(this.#middle.x)
-    const end = Math.min(isFirst ? Infinity : this.#found + ROWS_PER_FRAME * texels, texels ** 2)
-    for (; this.#found < end; this.#found++) {
-      // Half floats: some devices blend no others.
-      this.#next[this.#found] = DataUtils.toHalfFloat(this.#heightAt(this.#found))
+    // The square that is being made may be left behind, too.
+    _place.setFromMatrixPosition(this.#axes)
+    const isLeft = this.#found > 0 && subpoint.distanceTo(_place) > LEAP * width
+    if (this.#found === 0 || isLeft) {
+      const distance = subpoint.distanceTo(this.#middle)
+      const isSame = this.ground.version === this.#groundVersion
+      if (isSame && distance < MAX_DISTANCE * width) {
+        this.#found = 0
+        return
+      }
+      atmosphere.ellipsoid.eastNorthUpFrame(subpoint, this.#axes)
+      this.#groundVersion = this.ground.version
+      const isLeap = distance > LEAP * width && texels > COARSE
+      this.#coarse = isLeap ? new Float32Array(COARSE ** 2) : null
+      this.#found = 0
     }
-    if (end === texels ** 2) this.#change()
+    _toWorld.copy(atmosphere.worldToECEF).invert()
+    const heights = this.#coarse ?? this.#next
+    const side = this.#coarse ? COARSE : texels
+    const most = this.#coarse ? COARSE_PER_FRAME : ROWS_PER_FRAME * texels
+    const end = Math.min(isFirst ? Infinity : this.#found + most, heights.length)
+    for (; this.#found < end; this.#found++) {
+      const height = this.#heightAt(this.#found, side)
+      // Half floats: some devices blend no others.
+      heights[this.#found] = this.#coarse ? height : DataUtils.toHalfFloat(height)
+    }
+    if (end === heights.length) this.#change()
   }
 
   /** Asks for the heights anew, at once, after the ground or the world has changed. */
@@ -203,6 +267,7 @@ export class GroundShadow extends HeightFieldShadow {
     for (const square of this.#others) square.refresh()
     this.#middle.set(NaN, NaN, NaN)
     this.#found = 0
+    this.#frame = undefined
   }
 
   /** Frees the heights. */
@@ -211,14 +276,14 @@ export class GroundShadow extends HeightFieldShadow {
     this.heights.dispose()
   }
 
-  /** Height of the next square's ground over the plane through its middle [m]. */
-  #heightAt(texel: number): number {
-    const { atmosphere, width, texels } = this
-    const east = (texel % texels) + 0.5
-    const north = Math.floor(texel / texels) + 0.5
-    _place.set(east / texels - 0.5, north / texels - 0.5, 0).multiplyScalar(width)
+  /** Height of the next square's ground over the plane through its middle, by number of so many along its edge [m]. */
+  #heightAt(index: number, side: number): number {
+    const { atmosphere, width } = this
+    const east = (index % side) + 0.5
+    const north = Math.floor(index / side) + 0.5
+    _place.set(east / side - 0.5, north / side - 0.5, 0).multiplyScalar(width)
     _place.applyMatrix4(this.#axes)
-    _world.copy(_place).applyMatrix4(_toWorld.copy(atmosphere.worldToECEF).invert())
+    _world.copy(_place).applyMatrix4(_toWorld)
     return this.ground.heightBelow(_world) - atmosphere.ellipsoid.heightAt(_place)
   }
 
@@ -227,6 +292,12 @@ export class GroundShadow extends HeightFieldShadow {
     const { width } = this
     const { image } = this.heights
     const used = image.data as Uint16Array
+    if (this.#coarse !== null) {
+      spread(this.#coarse, this.#next)
+      this.#coarse = null
+      // Fine ones come next, wherever the camera is.
+      this.#groundVersion = NaN
+    }
     image.data = this.#next
     this.#next = used
     this.#found = 0

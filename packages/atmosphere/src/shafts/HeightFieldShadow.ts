@@ -66,8 +66,12 @@ class HillsInAir implements AirShadow {
       )
   }
 
-  dispose(): void {
+  free(): void {
     this.#swept.dispose()
+  }
+
+  dispose(): void {
+    this.free()
   }
 }
 
@@ -122,7 +126,7 @@ export class HeightFieldShadow implements AirOccluder, SweptHills {
   }
 
   /** Field whose shadows a camera sees, called before they are drawn: this one, but for a field that follows cameras. */
-  fieldOf(_camera: Camera): HeightFieldShadow {
+  fieldOf(_camera: Camera, _frame?: number): HeightFieldShadow {
     return this
   }
 

@@ -50,8 +50,8 @@ const _axes = new Matrix4()
  * const air = aerialPerspective(color, depth, camera, atmosphere, { shafts })
  * ```
  *
- * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they
- * are added to the atmosphere: `atmosphere.add(shafts)`. Each fragment
+ * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they are added to the
+ * atmosphere: `atmosphere.add(shafts)`. Fogs that were added before have shafts, later ones none. Each fragment
  * reads a volume of 144 × 81 rays in 24 slices, which is drawn once a frame. Compile a scene before its first frame, which else has none in its sky:
  * `await renderer.compileAsync(scene, camera)`.
  *
@@ -323,12 +323,13 @@ export class LightShafts implements ShadowedShafts {
     return qualities[this.#quality].rays === 0 || isOrthographicCamera === true
   }
 
-  /** Frees its textures, and the slot of the light's shadow. It can be used again. What was added stays, and is not its own. */
+  /** Frees its textures, and the slot of the light's shadow. It can be used again. What was added stays, and lends it no maps until then. */
   dispose(): void {
     this.#isActive = false
     releaseShadow(this.light, this)
     this.#map.dispose()
     this.#volume.dispose()
+    this.#shadows.free()
     for (const screen of this.screens) screen.free()
   }
 }

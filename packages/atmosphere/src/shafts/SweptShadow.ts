@@ -13,7 +13,7 @@ const HALF_STEP = 2 ** -10
 /** Hills that cast shadows, of which each camera may see a field of its own. */
 export interface SweptHills {
   readonly matrix: Matrix4
-  fieldOf(camera: Camera): SweptHills
+  fieldOf(camera: Camera, frame?: number): SweptHills
   acquire(light: ParallelLight): SweptHeights
   release(light: ParallelLight): void
 }
@@ -47,7 +47,7 @@ export class SweptShadow {
    * @returns World space to places and heights of the field.
    */
   update(renderer: Renderer, camera: Camera, toLight: Vector3): Matrix4 {
-    const field = this.#hills.fieldOf(camera)
+    const field = this.#hills.fieldOf(camera, renderer.info.frame)
     const map = this.#mapOf(field)
     const toField = this.#toField.copy(field.matrix).invert()
     map.update(renderer, toLight, toField)

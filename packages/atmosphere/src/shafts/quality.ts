@@ -21,13 +21,13 @@ interface Quality {
 export const qualities = {
   low: {
     rows: 960,
-    columns: 60,
+    columns: 120,
     spacing: 10,
     groups: 2,
     samples: 3,
     inFog: 12,
-    rays: 128,
-    sliceSamples: 2
+    rays: 144,
+    sliceSamples: 3
   },
   medium: {
     rows: 960,

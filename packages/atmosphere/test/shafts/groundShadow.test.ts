@@ -27,12 +27,13 @@ const above = (longitude: number, latitude: number): Vector3 =>
 function worstError(
   shadow: GroundShadow,
   heights: Uint16Array,
-  worldToECEF = new Matrix4()
+  worldToECEF = new Matrix4(),
+  texels = TEXELS
 ): number {
   let worst = 0
   const point = new Vector3()
   for (const [n, height] of heights.entries()) {
-    const [x, y] = [n % TEXELS, Math.floor(n / TEXELS)].map(texel => (texel + 0.5) / TEXELS)
+    const [x, y] = [n % texels, Math.floor(n / texels)].map(texel => (texel + 0.5) / texels)
     point.set(x, y, DataUtils.fromHalfFloat(height))
     point.applyMatrix4(shadow.matrix).applyMatrix4(worldToECEF)
     const place = ellipsoid.ecefToGeodetic(point)
@@ -148,6 +149,60 @@ it('has no more than four squares, of which the oldest takes up another camera',
   expect(new Set(fields).size).toBe(4)
   expect(shadow.fieldOf(cameraAbove(12, 47))).toBe(fields[0])
   expect(shadow.fieldOf(cameraAbove(15, 47))).toBe(fields[1])
+  shadow.dispose()
+})
+
+it('has a coarse square four frames after a leap, then a fine one, of where the camera is by then', () => {
+  const texels = 128
+  const shadow = groundShadow(atmosphere, ground, { width: WIDTH, texels })
+  const held = (): Uint16Array => shadow.heights.image.data as Uint16Array
+  const error = (): number => worstError(shadow, held(), undefined, texels)
+  shadow.follow(above(1, 47))
+  // It leaps while another square is being made, too.
+  shadow.follow(above(1.4, 47))
+  asked = 0
+  for (let frame = 0; frame < 4; frame++) shadow.follow(above(5, 47))
+  expect([shadow.version, asked]).toEqual([2, 64 ** 2])
+  expect(error()).toBeLessThan(15)
+  for (let frame = 0; frame < 64; frame++) shadow.follow(above(5.02, 47))
+  expect([shadow.version, asked]).toEqual([3, 64 ** 2 + texels ** 2])
+  expect(error()).toBeLessThan(3)
+  shadow.dispose()
+})
+
+it('has the heights anew whenever the version of the ground grows, about where the camera is', () => {
+  let rise = 0
+  const loaded = { heightBelow: (at: Vector3) => ground.heightBelow(at) + rise, version: 7 }
+  const shadow = groundShadow(atmosphere, loaded, { width: WIDTH, texels: TEXELS })
+  const middle = (): number => {
+    const heights = shadow.heights.image.data as Uint16Array
+    return DataUtils.fromHalfFloat(heights[(TEXELS / 2) * TEXELS + TEXELS / 2])
+  }
+  shadow.follow(above(1, 47))
+  const before = middle()
+  rise = 100
+  loaded.version++
+  for (let frame = 0; frame < TEXELS / 2; frame++) {
+    // Heights that arrive meanwhile are sought after those that are.
+    if (frame === 5) loaded.version++
+    expect(shadow.version).toBe(1)
+    shadow.follow(above(1, 47))
+  }
+  expect(shadow.version).toBe(2)
+  expect(middle() - before).toBeCloseTo(100, 0)
+  for (let frame = 0; frame < 2 * TEXELS; frame++) shadow.follow(above(1, 47))
+  expect(shadow.version).toBe(3)
+  shadow.dispose()
+})
+
+it('asks for heights once a frame, whoever sees its shadows', () => {
+  const shadow = groundShadow(atmosphere, ground, { width: WIDTH, texels: TEXELS })
+  const camera = cameraAbove(1, 47)
+  shadow.fieldOf(camera, 1)
+  move(camera, 1.4, 47)
+  asked = 0
+  for (const frame of [2, 2, 2, 3, 3]) shadow.fieldOf(camera, frame)
+  expect(asked).toBe(2 * 2 * TEXELS)
   shadow.dispose()
 })
 

@@ -286,6 +286,16 @@ describe('what is added to light shafts', () => {
       expect(inAir).toBe(onGround)
     }
   })
+
+  it('lends the shafts no map of a height field while they are disposed of', () => {
+    const field = heightFieldShadow(new Texture(), new Matrix4())
+    const release = vi.spyOn(field, 'release')
+    const shafts = lightShafts(atmosphere, camera, light).add(field)
+    shafts.dispose()
+    expect(release).toHaveBeenCalledOnce()
+    shafts.remove(field)
+    expect(release).toHaveBeenCalledOnce()
+  })
 })
 
 /** The node in the slot of a light's shadow. */

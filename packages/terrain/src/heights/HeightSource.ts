@@ -23,6 +23,8 @@ export interface GroundBounds {
   readonly lowest: number
   /** Upper bound of all heights [m]. */
   readonly highest: number
+  /** Counts up whenever heights have changed, such as those that were loaded; left out, they never do. */
+  readonly version?: number
 
   /**
    * Upper bound of the difference between the heights of two places.

@@ -1,9 +1,11 @@
 import fc from 'fast-check'
+import { Atmosphere } from '@welkin/atmosphere'
 import { Vector3 } from 'three'
 import { describe, expect, it } from 'vitest'
 import type { HeightTilesOptions } from '../../src/data/HeightTiles'
 import type { Pixels } from '../../src/data/loadPixels'
 import { TerrainRGBTiles, TerrariumTiles } from '../../src/data/TerrariumTiles'
+import { Terrain } from '../../src/Terrain'
 import { degreesOf, earth, hills, pageAt, pageOf, partsOf, terrariumTile } from './tiles'
 
 const URL = '{z}/{x}/{y}'
@@ -66,6 +68,16 @@ describe('heights', () => {
       .sub(earth.geodeticToECEF({ longitude, latitude }))
     const rise2 = sampleAt(tiles, longitude + step, latitude).height - height
     expect(gradient.dot(east)).toBeCloseTo(rise2, 2)
+  })
+
+  it('raise the version of their terrain when they arrive, for what has asked before', async () => {
+    const { tiles } = tilesOf()
+    const terrain = new Terrain(new Atmosphere(), tiles, { resolution: 4 })
+    const before = [terrain.version, terrain.heightAt(10.3, 47.2)]
+    await tiles.loadHeights(pageAt(10.3, 47.2, 7), never)
+    expect(terrain.version).toBeGreaterThan(before[0])
+    expect(terrain.heightAt(10.3, 47.2)).not.toBe(before[1])
+    terrain.dispose()
   })
 
   it('of neighbouring pages are the same along their edge', async () => {
