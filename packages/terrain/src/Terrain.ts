@@ -265,9 +265,8 @@ export class Terrain extends SeaMesh {
    */
   update(renderer: Renderer, camera: Camera, most?: number): void {
     const figure = this.#figure
-    if (figureOf(this.atmosphere) !== figure) {
+    if (figureOf(this.atmosphere) !== figure)
       fail('Terrain', 'atmosphere must stay flat or round, as it was at first')
-    }
     const { source } = this
     const fromWorld = worldToGround(this.atmosphere)
     positionWorld.setFromMatrixPosition(camera.matrixWorld)
@@ -276,16 +275,8 @@ export class Terrain extends SeaMesh {
     const clearance = Math.max(figure.heightAt(positionECEF) - ground, LEAST_CLEARANCE)
     const lowest = Math.max(source.lowest, this.seaLevel)
     const shadowDistance = this.castShadow ? this.#shadowDistance : 0
-    const viewer = viewerOf(
-      camera,
-      positionECEF,
-      clearance,
-      lowest,
-      fromWorld,
-      figure,
-      shadowDistance,
-      this.seaLevel
-    )
+    const where = [camera, positionECEF, clearance, lowest, fromWorld, figure] as const
+    const viewer = viewerOf(...where, shadowDistance, this.seaLevel)
     this.#uniforms.update(viewer, ground, poleOf(this.atmosphere, pole))
     this.#tiles.update(renderer, viewer, most)
     const { tree, selection } = this.#tiles
@@ -308,9 +299,8 @@ export class Terrain extends SeaMesh {
   override onBeforeRender(renderer: unknown, scene: Scene, camera: Camera): void {
     const pass = scene.overrideMaterial as { isShadowPassMaterial?: boolean } | null
     const isShadow = pass?.isShadowPassMaterial === true
-    if (!isShadow && (this.#camera === null || camera === this.#camera)) {
+    if (!isShadow && (this.#camera === null || camera === this.#camera))
       this.update(renderer as Renderer, camera)
-    }
     const { chosen, inView } = this.tileCount
     this.geometry.instanceCount = isShadow ? chosen : inView
   }
