@@ -266,26 +266,19 @@ export class Terrain extends SeaMesh {
    */
   update(renderer: Renderer, camera: Camera, most?: number): void {
     const figure = this.#figure
-    if (figureOf(this.atmosphere) !== figure) {
+    if (figureOf(this.atmosphere) !== figure)
       fail('Terrain', 'atmosphere must stay flat or round, as it was at first')
-    }
     const fromWorld = worldToGround(this.atmosphere)
     positionWorld.setFromMatrixPosition(camera.matrixWorld)
     positionECEF.copy(positionWorld).applyMatrix4(fromWorld)
     const ground = this.#heightAtSubpoint(figure.footPoint(positionECEF, subpoint))
     const above = figure.heightAt(positionECEF) - ground
     const shadowDistance = this.castShadow ? this.#shadowDistance : 0
-    const viewer = viewerOf(
-      camera,
-      positionECEF,
-      Math.max(above, LEAST_CLEARANCE),
-      Math.max(this.source.lowest, this.seaLevel),
-      fromWorld,
-      figure,
-      shadowDistance,
-      this.seaLevel,
-      above >= LEAST_CLEARANCE
-    )
+    const clearance = Math.max(above, LEAST_CLEARANCE)
+    const lowest = Math.max(this.source.lowest, this.seaLevel)
+    const where = [camera, positionECEF, clearance, lowest, fromWorld, figure] as const
+    const isAbove = above >= LEAST_CLEARANCE
+    const viewer = viewerOf(...where, shadowDistance, this.seaLevel, isAbove)
     this.#uniforms.update(viewer, ground, poleOf(this.atmosphere, pole))
     this.#tiles.update(renderer, viewer, most)
     const { tree, selection } = this.#tiles
@@ -308,9 +301,8 @@ export class Terrain extends SeaMesh {
   override onBeforeRender(renderer: unknown, scene: Scene, camera: Camera): void {
     const pass = scene.overrideMaterial as { isShadowPassMaterial?: boolean } | null
     const isShadow = pass?.isShadowPassMaterial === true
-    if (!isShadow && (this.#camera === null || camera === this.#camera)) {
+    if (!isShadow && (this.#camera === null || camera === this.#camera))
       this.update(renderer as Renderer, camera)
-    }
     const { chosen, inView } = this.tileCount
     this.geometry.instanceCount = isShadow ? chosen : inView
   }
