@@ -7,7 +7,6 @@ import { LAYER_STRIDE } from '../layers/layerUniforms'
 import { nightGain } from '../light/NightLight'
 import { vec4Array } from '../tsl-types'
 import { FAR_AWAY } from './tsl/layerBoundaries'
-import { ROUND } from './tsl/clearAir'
 import { matrix3, matrix4, number, vector2 } from '../uniforms'
 
 /** Order in which the pixels of a block are marched: neighbours in time are far apart. */
@@ -65,6 +64,12 @@ const LIGHT_CUT = 4
 
 /** `luminanceScale` by day, up to which light is raised by night [1/(cd/m²)]. */
 const DAYLIGHT_SCALE = 1e-4
+
+/**
+ * Frames in which each tile of rays is marched whole once; it shares no factor with the frames that a block takes.
+ * Greater: faster, and clouds come out from behind others late (*Cumulus* with "Time lapse").
+ */
+export const ROUND = 13
 
 /** Part of a block that clouds may move in a frame for rays to go by what the last frame's found. Greater: near edges lag (*Cockpit*). */
 const BLOCK_PART = 0.5

@@ -8,18 +8,13 @@ import {
   type Vec2,
   type Vec3
 } from '../../tsl-types'
+import { ROUND } from '../FrameUniforms'
 import { FAR_AWAY } from './layerBoundaries'
 import type { FrameInputs } from './viewRay'
 
 // Clear air is where it was in the last frame: a ray begins at the first cloud that those around it have found, and one that
 // met none in the last frame ends behind the clouds of its neighbours. Tiles of rays take turns to be marched whole, and find what is
 // new; so are rays that were out of the picture, and all of them where clouds have changed.
-
-/**
- * Frames in which each tile of rays is marched whole once; it shares no factor with the frames that a block takes.
- * Greater: faster, and clouds come out from behind others late (*Cumulus* with "Time lapse").
- */
-export const ROUND = 13
 
 /** Edge of a tile [rays]. Smaller: slower, since a GPU marches rays side by side together. */
 const TILE = 16
