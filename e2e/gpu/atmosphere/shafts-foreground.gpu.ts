@@ -54,7 +54,7 @@ gpuTest(
     const nothing = float(0) as Float
     const screen = shafts.upTo(depth, {
       isDrawn: true,
-      seenAt: at => ({ distance: distanceAt(at), transmittance: nothing }),
+      seenAt: at => ({ distance: distanceAt(at), transmittance: nothing })
     })
     await set.draw()
     const pipeline = new RenderPipeline(renderer)

@@ -40,9 +40,6 @@ const MIXED_OCTAVES = 0.12
 /** Greatest number that the targets keep: half floats hold a little more. */
 const MAX_KEPT = 6e4
 
-/** Octaves of depth, times the part of the light that is lost, by which rays around may differ where it is mixed. Greater: blots on clouds before a low sun (*Congestus*). */
-const MIXED_DARK = 0.02
-
 /** Scale of light in the targets. */
 const LIGHT_SCALE = RADIANCE_SCALE / 8
 
@@ -184,9 +181,7 @@ export class LostLightGrid {
         most.assign(most.max(both))
       })
       const apart = most.sub(least).toConst()
-      const dark = luminance(result.rgb).div(most.y.exp2()).mul(apart.x)
-      const isEven = apart.y.lessThan(MIXED_OCTAVES).and(dark.lessThan(MIXED_DARK))
-      const isMixed = isEven.and(most.y.lessThan(MAX_MIXED))
+      const isMixed = apart.y.lessThan(MIXED_OCTAVES).and(most.y.lessThan(MAX_MIXED))
       const depth = result.w.add(isMixed.select(0, STEEP_DEPTH))
       result.w.assign(apart.x.lessThan(SAME_DEPTH).select(depth, APART_DEPTH))
     })
