@@ -195,7 +195,10 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   #lostUpTo(end: RayEnd): Vec3 {
-    const lost = this.grid.read(this.#place, end.distance, () => this.#litAir(this.#rayTo(end)))
+    const distance = this.#seenDistance(this.#place, end.distance)
+    const lost = this.grid.read(this.#place, distance, () =>
+      this.#litAir(this.#rayTo({ ...end, distance }))
+    )
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -229,6 +232,19 @@ export class ScreenShafts implements ScreenShadows {
     }
   }
 
+  /** Distance of what is seen [m]: on the logarithms' way from a foreground to what is behind, as far as that shows. */
+  #seenDistance(at: Vec2, distance: Float): Float {
+    if (this.foreground === undefined) return distance
+    const front = this.foreground.seenAt(at)
+    const behind = front.transmittance.mul(this.#isForward.oneMinus())
+    return front.distance
+      .min(distance)
+      .div(distance)
+      .pow(behind.oneMinus())
+      .mul(distance)
+      .toConst() as Float
+  }
+
   /** Light that the ray of a pixel of the grid loses. */
   #march(renderer: Renderer, at: Vec2, pixel: Vec2): LostLight {
     const { view, shadowedAir, steps } = this.#shafts
@@ -236,7 +252,8 @@ export class ScreenShafts implements ScreenShadows {
     const { seenFrom, most } = this.#seen(at)
     const seen = { ...ray, distance: ray.distance.min(most).toConst() as Float, seenFrom }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
-    return { lost: this.#color(lost), lit: this.#litAir(ray), distance: ray.distance }
+    const distance = this.#seenDistance(at, ray.distance)
+    return { lost: this.#color(lost), lit: this.#litAir({ ...ray, distance }), distance }
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
