@@ -47,10 +47,10 @@ gpuTest(
     const { shafts, depth, camera } = set
     camera.updateMatrixWorld()
     // All air is dark, between pixels of the grid another cloud begins.
-    shafts.add({ castInto: () => ({ transmittance: () => () => float(0) as Float }) })
+    shafts.add({ castInto: () => ({ transmittance: () => () => float(0) }) })
     const edge = 31
     const distanceAt = (at: Vec2): Float =>
-      at.x.mul(size.width).greaterThan(edge).select(20_000, 4000) as Float
+      at.x.mul(size.width).greaterThan(edge).select(20_000, 4000)
     const nothing = float(0) as Float
     const screen = shafts.upTo(depth, {
       isDrawn: true,

@@ -183,9 +183,8 @@ export class AutoExposureNode extends Node<'vec4'> {
   }
 
   /**
-   * How far a bright part gives way to the rest, in [0, 1]. Where a tenth of the picture would be over 0.8, as the sky over a valley
-   * after sunset, the picture is darker by this part of the stops over that: 0 exposes for the mean alone and lets such a sky
-   * go white, 1 keeps it and leaves the land dark [–].
+   * Part, in [0, 1], of the stops by which the brightest tenth of the picture would be over 0.8, that the picture is darker: at 0 the
+   * sky over a valley after sunset goes white, at 1 the land stays dark [–].
    */
   get highlightPriority(): number {
     return this.#highlightPriority
@@ -304,14 +303,13 @@ export class AutoExposureNode extends Node<'vec4'> {
   #evaluate(): void {
     if (this.#reading === null) return
     const { logs, scale } = this.#reading
-    const { mean, light, bright } = meteredLogLuminance(logs, this.#weights, this.#percentiles)
-    this.#isBlack = bright <= meterForm.darkest
+    const found = meteredLogLuminance(logs, this.#weights, this.#percentiles)
+    this.#isBlack = found.bright <= meterForm.darkest
     // By the scale of that picture: there may be another by now.
-    this.#luminance = {
-      mean: 2 ** mean / scale,
-      light: 2 ** light / scale,
-      bright: 2 ** bright / scale
-    }
+    const [mean, light, bright] = [found.mean, found.light, found.bright].map(
+      log => 2 ** log / scale
+    )
+    this.#luminance = { mean, light, bright }
   }
 
   override setup(): Node {

@@ -200,12 +200,14 @@ export class LostLightGrid {
    * Light that a pixel loses, as {@link LostLight} has it.
    *
    * @param at - Its place in the picture.
+   * @param distanceBy - See {@link LostLight}; given log₂ of the distance of pixels around, or what is near to no distance.
    * @param lit - See {@link LostLight}; asked for in a branch.
    */
-  read(at: Vec2, distance: Float, lit: () => Vec3): Vec3 {
-    const own = log2(distance).toConst() as Float
+  read(at: Vec2, distanceBy: (around: Float) => Float, lit: (distance: Float) => Vec3): Vec3 {
     const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
+    const distance = distanceBy(mean.w.sub(step(STEEP_DEPTH, mean.w).mul(STEEP_DEPTH)))
+    const own = log2(distance).toConst() as Float
     const lost = mean.rgb.mul(this.#growth(distance).div(LIGHT_SCALE)).toVar() as Vec3
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN), () => {
       const size = this.#gridSize
@@ -231,7 +233,7 @@ export class LostLightGrid {
         lost.addAssign(other.rgb.mul(weight))
         weights.addAssign(weight)
       })
-      lost.mulAssign(lit().div(weights))
+      lost.mulAssign(lit(distance).div(weights))
     })
     return lost
   }

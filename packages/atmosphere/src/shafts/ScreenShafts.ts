@@ -195,9 +195,10 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   #lostUpTo(end: RayEnd): Vec3 {
-    const distance = this.#seenDistance(this.#place, end.distance)
-    const lost = this.grid.read(this.#place, distance, () =>
-      this.#litAir(this.#rayTo({ ...end, distance }))
+    const lost = this.grid.read(
+      this.#place,
+      around => this.#seenDistance(this.#place, end.distance, around),
+      distance => this.#litAir(this.#rayTo({ ...end, distance }))
     )
     return lost.mul(this.#gain.mul(this.#strength))
   }
@@ -233,16 +234,11 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /** Distance of what is seen [m]: on the logarithms' way from a foreground to what is behind, as far as that shows. */
-  #seenDistance(at: Vec2, distance: Float): Float {
+  #seenDistance(at: Vec2, distance: Float, around?: Float): Float {
     if (this.foreground === undefined) return distance
-    const front = this.foreground.seenAt(at)
+    const front = this.foreground.seenAt(at, around)
     const behind = front.transmittance.mul(this.#isForward.oneMinus())
-    return front.distance
-      .min(distance)
-      .div(distance)
-      .pow(behind.oneMinus())
-      .mul(distance)
-      .toConst() as Float
+    return front.distance.min(distance).div(distance).pow(behind.oneMinus()).mul(distance).toConst()
   }
 
   /** Light that the ray of a pixel of the grid loses. */

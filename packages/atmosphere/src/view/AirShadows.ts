@@ -16,8 +16,10 @@ export interface ForegroundLayer {
    * Its distance [m], and the part of the light from behind that passes.
    *
    * @param at - Place in the picture, as texture coordinates.
+   * @param around - Distance that is known of pixels around, for one that is kept in steps: the distance is as near to it as the
+   *   steps allow [log2 m].
    */
-  seenAt(at: Vec2): { distance: Float; transmittance: Float }
+  seenAt(at: Vec2, around?: Float): { distance: Float; transmittance: Float }
 }
 
 /** Shadows in the air of a picture. */

@@ -27,7 +27,7 @@ export interface ExposureSettings {
   highlightPriority: number
 }
 
-/** What a picture is exposed for [cd/m²]. */
+/** Luminances that a picture is exposed for [cd/m²]. */
 export interface MeteredLuminance {
   /** Mean, in logarithms. */
   mean: number
