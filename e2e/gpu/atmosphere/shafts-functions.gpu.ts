@@ -136,7 +136,11 @@ gpuTest(
       places.map(([x, y]) => [x, y, 1000, 0]),
       ({ x, y, z }) =>
         vec4(
-          grid.read(vec2(x, y), z, () => vec3(2)),
+          grid.read(
+            vec2(x, y),
+            () => z,
+            () => vec3(2)
+          ),
           0
         )
     )

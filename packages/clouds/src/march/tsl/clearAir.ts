@@ -61,7 +61,9 @@ export interface FoundOnRay {
 export function packFound({ first, until, end, steps }: FoundOnRay): Float {
   const isMemory = until.greaterThan(0).and(first.equal(0)).toConst()
   const begin = isMemory.select(until, first.greaterThan(0).select(first, end)) as Float
-  const level = encodeDistance(begin).sub(FIRST).mul(PER_OCTAVE).floor().clamp(0, CLEAR)
+  // A cloud beyond the last level is no clear ray.
+  const last = first.greaterThan(0).select(LAST, CLEAR)
+  const level = encodeDistance(begin).sub(FIRST).mul(PER_OCTAVE).floor().clamp(0, last)
   const code = level.mul(2).add(isMemory.select(1, 0))
   const part = steps.div(256).min(1).mul(STEPS).round()
   return code
@@ -143,7 +145,8 @@ export function clearAir(
       .sub(2 ** FIRST)
     until.assign(nearest.equal(CLEAR).select(FAR_AWAY, begin.max(0)))
     If(wasClear.greaterThan(0), () => {
-      from.assign(distanceOf(farthest.add(1)).mul(BEHIND))
+      const behind = distanceOf(farthest.add(1)).mul(BEHIND)
+      from.assign(farthest.equal(LAST).select(FAR_AWAY, behind))
     })
   })
   return { until, from }
