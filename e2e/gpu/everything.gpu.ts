@@ -81,8 +81,6 @@ const size = { width: 32, height: 18 }
 
 /** Textures that a stage may sample on WebGPU's default limits and on WebGL2. */
 const LIMIT = 16
-/** Most that a pass of Welkin's own may sample, so that users have room. */
-const OWN_LIMIT = 15
 /** Name of the material that lights and shadows fall on. */
 const LIT = 'lit'
 
@@ -283,7 +281,7 @@ function checkTextures(t: GpuContext, shaders: readonly FragmentShader[]): void 
   const counted = shaders.map(({ name, textures, lines }) => ({
     label: `${name || 'unnamed'}: ${textures} textures, ${lines} lines`,
     textures,
-    limit: name === LIT ? LIMIT : OWN_LIMIT
+    limit: LIMIT
   }))
   const most = counted.toSorted((a, b) => b.textures - a.textures)
   t.note(
@@ -306,7 +304,7 @@ const situations = [
 ] as const
 
 gpuTest(
-  'all that there is draws light at once, under GTAO, TRAA and bloom, and no pass samples more than 15 textures',
+  'all that there is draws light at once, under GTAO, TRAA and bloom, and no pass samples more than 16 textures',
   async t => {
     const renderer = await t.createRenderer(size)
     const shaders = watchFragmentShaders(renderer)
