@@ -280,8 +280,7 @@ class World {
 function checkTextures(t: GpuContext, shaders: readonly FragmentShader[]): void {
   const counted = shaders.map(({ name, textures, lines }) => ({
     label: `${name || 'unnamed'}: ${textures} textures, ${lines} lines`,
-    textures,
-    limit: LIMIT
+    textures
   }))
   const most = counted.toSorted((a, b) => b.textures - a.textures)
   t.note(
@@ -290,7 +289,7 @@ function checkTextures(t: GpuContext, shaders: readonly FragmentShader[]): void 
       .map(({ label }) => label)
       .join('; ')}`
   )
-  const over = counted.filter(({ textures, limit }) => textures > limit)
+  const over = counted.filter(({ textures }) => textures > LIMIT)
   expectTrue(over.length === 0, `too many: ${over.map(({ label }) => label).join('; ')}`)
 }
 
