@@ -83,7 +83,7 @@ export const scaleWeights = {
   /** Fronts and belts: density/systemsForm.ts. */
   planet: 0.75,
   /** Part by which the last one is more in storms. 0: storms of one size all over the planet (*World clouds*, without its map). */
-  storms: 1,
+  storms: 0.8,
   /** Share of finer cells in the regions. 0: their edges have no finer structure. */
   regionCells: 0.6,
   /** Share of bands in the mesoscale and in the regions. 0: round clusters alone, no fronts. */

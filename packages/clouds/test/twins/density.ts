@@ -29,7 +29,6 @@ import { isStorm, stormRadius } from '../../src/layers/storms'
 import { windAxis } from '../../src/layers/wind'
 import { ENCODING_SCALE } from '../../src/noise/noiseRecipes'
 import { NOISE_SIZE } from '../../src/noise/noiseSizes'
-import { FADE_COARSENESS, FIELDS_FADE } from '../../src/density/tsl/resolution'
 import type { Vec3Array } from './noise'
 import type { NoiseTextures } from './noiseTextures'
 import { frayedDistance, stormAround, stormStrength, type StormThere } from './storm'
@@ -205,11 +204,6 @@ export function weatherAt(
     shifted(placeIn(inLayer, latticeRotations.fields, fieldPeriod), region, weatherShifts.regions),
     fieldLevel
   )
-  const fieldsKept = smoothstep(
-    -FIELDS_FADE,
-    0,
-    FADE_COARSENESS * layerForms(layer).coarseness - fieldLevel
-  )
   const [shiftX, shiftY] = [0, 1].map(
     axis => (weatherShifts.fields * fields[axis] + weatherShifts.regions * region[axis]) * period
   )
@@ -232,7 +226,8 @@ export function weatherAt(
   )
 
   const background =
-    fieldsKept * (scaleWeights.fields * dot(fields) + scales.cells * fields[2]) +
+    scaleWeights.fields * dot(fields) +
+    scales.cells * fields[2] +
     mesoscaleFactor * (mesoscale[0] + scaleWeights.bands * mesoscale[3]) +
     scales.regions *
       (region[2] + scaleWeights.regionCells * region[0] + scaleWeights.regionBands * region[3]) +
@@ -255,7 +250,7 @@ export function weatherAt(
   const blurred = background + single
   const lost =
     scales.cloudVariance * lostShare(level - coarseness) +
-    scales.fieldVariance * (1 - fieldsKept ** 2 * (1 - lostShare(fieldLevel - 0.5))) +
+    scales.fieldVariance * lostShare(fieldLevel - 0.5) +
     (mesoscaleFactor ** 2 * (1 + scaleWeights.bands ** 2) * lostShare(mesoscaleLevel - 0.8)) / 12 +
     (scales.regions ** 2 * REGION_SIZE ** 2 * lostShare(regionLevel - 0.8)) / 12
   const variance = level > 0 ? lost : 0

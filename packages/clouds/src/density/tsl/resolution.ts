@@ -36,19 +36,6 @@ export const weatherLevel = (footprint: Float, perPeriod: Float | number): Float
  */
 const UNRESOLVED_LEVELS = [0.5, 4.5] as const
 
-/**
- * Levels of detail over which fields fade out: their noise is seen to repeat where many of its periods are in sight [octaves]. Greater:
- * the same field in rows, from orbit (*World clouds*, without its map).
- */
-export const FIELDS_FADE = 2
-
-/** Levels of detail by which those of storms, which are large, fade later, per level of their coarseness. 0: too bright from 4,000 km. */
-export const FADE_COARSENESS = 8
-
-/** Factor of fields at a level of detail [–]. */
-export const fieldsKept = ({ coarseness }: LayerNodes, level: Float): Float =>
-  smoothstep(-FIELDS_FADE, 0, coarseness.mul(FADE_COARSENESS).sub(level)).toConst()
-
 /** Share of a noise's variance that its levels of detail have lost. */
 const lostShare = (level: Float): Float => smoothstep(0, strengthForm.fadeLevels, level)
 
@@ -64,14 +51,11 @@ function lostVariance(layer: LayerNodes, footprint: Float, level: Float, cloudLe
     .add(regionVariance)
     .oneMinus()
   const fieldLevel = level.sub(strengthForm.levelsPerOctave * Math.log2(noisePeriods.fields)).max(0)
-  const kept = fieldsKept(layer, fieldLevel)
   const mesoscaleLevel = weatherLevel(footprint, 1 / noisePeriods.mesoscale)
   const regionLevel = weatherLevel(footprint, 1 / noisePeriods.regions)
   return layer.cloudVariance
     .mul(lostShare(cloudLevel))
-    .add(
-      fieldVariance.mul(lostShare(fieldLevel.sub(0.5)).oneMinus().mul(kept.mul(kept)).oneMinus())
-    )
+    .add(fieldVariance.mul(lostShare(fieldLevel.sub(0.5))))
     .add(mesoscaleVariance.mul(lostShare(mesoscaleLevel.sub(0.8))))
     .add(regionVariance.mul(lostShare(regionLevel.sub(0.8))))
 }

@@ -10,7 +10,7 @@ import {
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { layerAt, type LayerNodes } from './layer'
 import { planetWaves } from './planetWaves'
-import { fieldsKept, weatherLevel } from './resolution'
+import { weatherLevel } from './resolution'
 import { zenithAt, type CloudSample } from './sample'
 import { cycloneAround, frontsAndBelts } from './weatherSystems'
 
@@ -110,10 +110,9 @@ export function weatherBackground(
 ): PackedBackground {
   const { regions, systems } = around
   const scale = layer.perWeatherPeriod.div(noisePeriods.fields).toConst() as Float
-  const level = weatherLevel(footprint, scale)
   const fields = field.textures.weather
     .sample(layer.fieldLattice(subpoint).add(regions.xyz.mul(weatherShifts.regions)))
-    .level(level)
+    .level(weatherLevel(footprint, scale))
     .sub(0.5)
     .toConst() as Vec4
   const mesoscale = mesoscaleAt(field, layer, subpoint, around, footprint)
@@ -121,7 +120,6 @@ export function weatherBackground(
     .dot(layer.weights)
     .mul(scaleWeights.fields)
     .add(fields.z.mul(layer.cells))
-    .mul(fieldsKept(layer, level))
     .add(mesoscale.x.add(mesoscale.w.mul(scaleWeights.bands)).mul(layer.mesoscale))
     .add(
       regions.z
