@@ -31,6 +31,9 @@ const MESH_SAMPLES = 6
 /** Height in radii of the planet above which meshes have no shafts: from there one direction holds all rays of light. */
 const MAX_MESH_HEIGHT = 20
 
+/** Foreground at a place in the picture. */
+type SeenForeground = ReturnType<ForegroundLayer['seenAt']>
+
 /** End of a view ray: displacement in the mapped space of what gives its direction, its length, and how far one sees [m]. */
 interface RayEnd {
   readonly offset: Vec3
@@ -197,7 +200,7 @@ export class ScreenShafts implements ScreenShadows {
   #lostUpTo(end: RayEnd): Vec3 {
     const lost = this.grid.read(
       this.#place,
-      around => this.#seenDistance(this.#place, end.distance, around),
+      around => this.#seenDistance(this.foreground?.seenAt(this.#place, around), end.distance),
       distance => this.#litAir(this.#rayTo({ ...end, distance }))
     )
     return lost.mul(this.#gain.mul(this.#strength))
@@ -221,9 +224,12 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /** Part of the light from a distance that the picture has, and the distance beyond which it has none [m]. */
-  #seen(at: Vec2): { seenFrom?: (distance: Float) => Float; most: Float } {
-    if (this.foreground === undefined) return { most: float(FAR) }
-    const { distance, transmittance } = this.foreground.seenAt(at)
+  #seen(front: SeenForeground | undefined): {
+    seenFrom?: (distance: Float) => Float
+    most: Float
+  } {
+    if (front === undefined) return { most: float(FAR) }
+    const { distance, transmittance } = front
     // Behind the foreground the shadows of materials are dimmed with them.
     const before = transmittance.mul(this.#isForward).oneMinus().toConst() as Float
     const behind = transmittance.mul(this.#isForward.oneMinus()).toConst() as Float
@@ -234,9 +240,8 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /** Distance of what is seen [m]: on the logarithms' way from a foreground to what is behind, as far as that shows. */
-  #seenDistance(at: Vec2, distance: Float, around?: Float): Float {
-    if (this.foreground === undefined) return distance
-    const front = this.foreground.seenAt(at, around)
+  #seenDistance(front: SeenForeground | undefined, distance: Float): Float {
+    if (front === undefined) return distance
     const behind = front.transmittance.mul(this.#isForward.oneMinus())
     return front.distance.min(distance).div(distance).pow(behind.oneMinus()).mul(distance).toConst()
   }
@@ -245,10 +250,11 @@ export class ScreenShafts implements ScreenShadows {
   #march(renderer: Renderer, at: Vec2, pixel: Vec2): LostLight {
     const { view, shadowedAir, steps } = this.#shafts
     const ray = this.#rayTo(this.#endIn(renderer, at))
-    const { seenFrom, most } = this.#seen(at)
+    const front = this.foreground?.seenAt(at)
+    const { seenFrom, most } = this.#seen(front)
     const seen = { ...ray, distance: ray.distance.min(most).toConst() as Float, seenFrom }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
-    const distance = this.#seenDistance(at, ray.distance)
+    const distance = this.#seenDistance(front, ray.distance)
     return { lost: this.#color(lost), lit: this.#litAir({ ...ray, distance }), distance }
   }
 
