@@ -3,6 +3,7 @@ import { FloatType, NearestFilter, type RenderTarget } from 'three'
 import { float, If, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { ShadingContext } from '../light/tsl/shadingContext'
+import { CORNERS } from '../temporal/tsl/cells'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { encodeDistance } from '../temporal/tsl/packing'
 import type { Float, LevelTexture, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
@@ -36,14 +37,6 @@ const FOUND = 2048
  */
 const SAME_END = [-0.3, -0.1] as const
 const LEAST_WEIGHT = 1e-3
-
-/** Corners of a cell between four rays. */
-const CORNERS = [
-  [0, 0],
-  [1, 0],
-  [0, 1],
-  [1, 1]
-] as const
 
 /**
  * Precipitation on the rays of a frame, with its light: a pass between the march and the light of the clouds. It is softer than clouds are, and takes

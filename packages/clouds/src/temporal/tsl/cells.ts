@@ -31,8 +31,8 @@ export interface Cell {
   readonly distances: Vec4
 }
 
-/** Corners of a cell [marched pixels]. */
-const CORNERS = [
+/** Corners of a cell between four pixels of a grid [pixels]. */
+export const CORNERS = [
   [0, 0],
   [1, 0],
   [0, 1],
