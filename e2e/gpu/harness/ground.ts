@@ -1,5 +1,7 @@
 import type { HeightSource } from '@welkin/terrain'
+import { BoxGeometry, Mesh, MeshBasicMaterial, PerspectiveCamera } from 'three'
 import { vec4 } from 'three/tsl'
+import type { GpuContext } from './context'
 
 /** Level ground. */
 export const levelGround: HeightSource = {
@@ -12,4 +14,38 @@ export const levelGround: HeightSource = {
     return target
   },
   sample: () => vec4(0)
+}
+
+/** A box in the air over the origin, which casts no shadow yet, and a camera above it that looks down. */
+export function boxFromAbove(aspect: number): { box: Mesh; camera: PerspectiveCamera } {
+  const box = new Mesh(new BoxGeometry(4, 1, 4), new MeshBasicMaterial({ color: 0 }))
+  box.position.y = 5
+  const camera = new PerspectiveCamera(60, aspect, 0.1, 1e7)
+  camera.position.y = 25
+  camera.rotation.x = -Math.PI / 2
+  camera.updateMatrixWorld()
+  return { box, camera }
+}
+
+/** Part of its light that each pixel of a row has of what it had before. */
+export const sharesOf = (row: readonly number[], before: readonly number[]): number[] =>
+  row.map((value, x) => value / Math.max(before[x], 1e-9))
+
+/**
+ * Checks the shadow of a {@link boxFromAbove} under a sun 40° up in the east, by the middle row of a picture 64 pixels wide.
+ *
+ * @throws If there is none, it is everywhere, or the ground was black before.
+ */
+export function expectBoxShadow(
+  t: GpuContext,
+  row: readonly number[],
+  before: readonly number[]
+): void {
+  const shares = sharesOf(row, before)
+  const shadow = shares.slice(0, 26).filter(share => share < 0.05).length
+  const lit = shares.slice(38).filter(share => share > 0.95).length
+  t.note(`${shadow} pixels in the shadow of a box, ${lit} in the light`)
+  if (before.slice(0, 26).some(value => value === 0)) throw new Error('the ground is black')
+  if (shadow < 4) throw new Error('a box casts no shadow on the ground')
+  if (lit < 24) throw new Error('the ground is dark where no shadow is')
 }

@@ -9,12 +9,9 @@ import {
 } from '@welkin/atmosphere'
 import { Terrain, type HeightSource } from '@welkin/terrain'
 import {
-  BoxGeometry,
   DataTexture,
   FloatType,
   Matrix4,
-  Mesh,
-  MeshBasicMaterial,
   PerspectiveCamera,
   RenderTarget,
   RepeatWrapping,
@@ -25,6 +22,7 @@ import { pass, vec3, vec4 } from 'three/tsl'
 import { RenderPipeline, type Node } from 'three/webgpu'
 import { WaveHeights } from '../../bench/cracksGround'
 import { gpuTest } from '../harness/gpu-test'
+import { boxFromAbove, expectBoxShadow, sharesOf } from '../harness/ground'
 import { readPicture, type Picture } from '../harness/picture'
 
 const SIZE = { width: 64, height: 48 }
@@ -136,14 +134,8 @@ gpuTest('the ground receives shadows of things', async t => {
   })
   sun.shadow.camera.updateProjectionMatrix()
   const scene = new Scene().add(terrain, sun, sun.target)
-  // From above, on a box in the air and on ground below it; its shadow falls to the west.
-  const box = new Mesh(new BoxGeometry(4, 1, 4), new MeshBasicMaterial({ color: 0 }))
-  box.position.y = 5
+  const { box, camera } = boxFromAbove(SIZE.width / SIZE.height)
   scene.add(box)
-  const camera = new PerspectiveCamera(60, SIZE.width / SIZE.height, 0.1, 1e7)
-  camera.position.y = 25
-  camera.rotation.x = -Math.PI / 2
-  camera.updateMatrixWorld()
   terrain.update(renderer, camera, Infinity)
   const row = async (): Promise<number[]> => {
     const picture = await t.render(renderer, scene, camera, SIZE)
@@ -153,15 +145,9 @@ gpuTest('the ground receives shadows of things', async t => {
   // Told after a first frame, of which the material need not know: three has the shadow in the next but one.
   terrain.receiveShadow = box.castShadow = true
   await row()
-  const shares = (await row()).map((value, x) => value / Math.max(alone[x], 1e-9))
-  const shadow = shares.slice(0, 26).filter(share => share < 0.05).length
-  const lit = shares.slice(38).filter(share => share > 0.95).length
-  t.note(`${shadow} pixels in the shadow of a box, ${lit} in the light`)
-  if (alone.slice(0, 26).some(value => value === 0)) throw new Error('the ground is black')
-  if (shadow < 4) throw new Error('a box casts no shadow on the ground')
-  if (lit < 24) throw new Error('the ground is dark where no shadow is')
+  expectBoxShadow(t, await row(), alone)
   terrain.receiveShadow = false
-  const left = (await row()).map((value, x) => value / Math.max(alone[x], 1e-9)).slice(0, 26)
+  const left = sharesOf(await row(), alone).slice(0, 26)
   t.note(`when it no longer receives any, ${Math.min(...left).toFixed(4)} of the light at least`)
   terrain.dispose()
   if (!left.every(share => share > 0.99)) throw new Error('the shadow stays')
