@@ -6,6 +6,13 @@ import type { Viewer } from './tiles/cpu/viewer'
 
 const reference = new Vector3()
 
+/**
+ * Distance up to which flat ground has triangles twice as large: so far, and so many times the viewer's height more [m, –]. Greater: the
+ * glow of a low sun at the horizon, which is drawn at vertices, is coarse.
+ */
+const FLAT_UNTIL = 2000
+const FLAT_PER_HEIGHT = 100
+
 /** Uniforms of a terrain's shaders, for one viewer. ECEF axes. */
 export class TerrainUniforms {
   /** Point near the viewer's subpoint in whole multiples of 256 m [256 m]. */
@@ -24,6 +31,8 @@ export class TerrainUniforms {
   readonly ceiling = number()
   /** Depth of the skirt about a tile [cells]: more where levels of neighbours differ while pages are missing. */
   readonly skirt = number(1)
+  /** Distance up to which triangles are twice as large on flat ground; twice as far none is [m]. */
+  readonly flatUntil = number()
   /** Factor on the colours of pictures [–]. */
   readonly imageAlbedo = number(1)
   /** Radii of the ellipsoid [m]. */
@@ -48,10 +57,11 @@ export class TerrainUniforms {
    * @param groundHeight - Below the viewer [m].
    * @param pole - Unit vector to the north pole.
    */
-  update({ datumPoint }: Viewer, groundHeight: number, pole: Vector3): void {
+  update({ datumPoint, clearance }: Viewer, groundHeight: number, pole: Vector3): void {
     this.pole.value.copy(pole)
     this.reference.value.copy(datumPoint).divideScalar(REFERENCE_STEP).round()
     this.datum.value.copy(datumPoint).sub(this.referenceECEF(reference))
     this.groundHeight.value = groundHeight
+    this.flatUntil.value = FLAT_UNTIL + FLAT_PER_HEIGHT * clearance
   }
 }

@@ -78,7 +78,7 @@ export function tileVertex(
   const tileOffset = instance('tileOffset')
   const tileCube = instance('tileCube')
   const { x: own, y: parent, z: quarter, w: fade } = instance('tilePage')
-  const { radii, stretch, datum, groundHeight, seaLevel, ceiling, skirt: skirtScale } = uniforms
+  const { radii, stretch, datum, groundHeight, seaLevel, ceiling, flatUntil } = uniforms
   const { first, second } = faceAxes(tileCube.w)
   const cube = tileCube.xyz
   const extent = tileOffset.w
@@ -121,6 +121,7 @@ export function tileVertex(
   const bend = middle.sub(left.add(right).mul(0.5)).add(sagitta).abs()
   const flatness = smoothstep(...FLAT, bend.div(distance))
     .oneMinus()
+    .mul(smoothstep(flatUntil, flatUntil.mul(2), distance).oneMinus())
     .toConst('flatness') as Float
   const mixed = mix(
     mix(fine, before, flatness),
@@ -138,7 +139,7 @@ export function tileVertex(
   const height = mixed.x.min(ceiling.add(room)).max(seaLevel)
   const up = figure.upOfCube(cube.add(delta), stretch).toConst('up') as Vec3
   const tilt = figure.turnOfUp(cube, delta, stretch)
-  const skirt = skirtShare.mul(cell.mul(skirtScale).min(cell.max(DEEPEST_SKIRT)))
+  const skirt = skirtShare.mul(cell.mul(uniforms.skirt).min(cell.max(DEEPEST_SKIRT)))
   const position = base.xyz
     .add(subpoint)
     .add(tilt.mul(groundHeight))
