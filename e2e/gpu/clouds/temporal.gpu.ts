@@ -188,10 +188,9 @@ gpuTest(
         // All pictures of a view have the same shadow maps.
         const { shadows } = sky.node
         const update = shadows.update.bind(shadows)
-        for (const [height, pitch, frames, most] of [
-          [2, 0.6, 48, 0.002],
-          // Pixels have one or two samples.
-          [3e6, -1.3, 20, 0.003]
+        for (const [height, pitch, frames] of [
+          [2, 0.6, 48],
+          [3e6, -1.3, 20]
         ]) {
           sky.camera.position.y = height
           sky.camera.rotation.x = pitch
@@ -212,10 +211,16 @@ gpuTest(
             frame.reset()
             return blockMeans(await sky.draw(frames))
           }
-          const [found, expected] = [await draw(false), await draw(true)]
-          const part = apart(found, expected) / mean(expected)
-          t.note(`from ${height} m off by ${(100 * part).toFixed(3)} %`)
-          expectTrue(part < most, `from ${height} m rays that begin at clouds are off by ${part}`)
+          const [found, expected, again] = [await draw(false), await draw(true), await draw(true)]
+          const [part, noise] = [found, again].map(each => apart(each, expected) / mean(expected))
+          const figures = `off by ${(100 * part).toFixed(3)} %, whole ones by ${(100 * noise).toFixed(3)} %`
+          t.note(`from ${height} m ${figures}`)
+          // Pictures differ by their samples.
+          expectTrue(
+            part < 1.2 * noise,
+            `from ${height} m rays that begin at clouds are ${figures}`
+          )
+          if (height < 1e6) expectTrue(part < 0.002, `rays that begin at clouds are ${figures}`)
         }
         sky.dispose()
       },

@@ -37,6 +37,9 @@ const LAST = 62
 /** Level of a ray that is clear to its end, beyond all others. */
 const CLEAR = LAST + 1
 
+/** Distance beyond which none is told from another, nor from none at all: layers that a ray enters there are marched whole [m]. */
+export const FARTHEST_KNOWN = 2 ** (FIRST + LAST / PER_OCTAVE)
+
 /** Steps over 256 are kept in as many parts. */
 const STEPS = 15
 
@@ -61,9 +64,7 @@ export interface FoundOnRay {
 export function packFound({ first, until, end, steps }: FoundOnRay): Float {
   const isMemory = until.greaterThan(0).and(first.equal(0)).toConst()
   const begin = isMemory.select(until, first.greaterThan(0).select(first, end)) as Float
-  // A cloud beyond the last level is no clear ray.
-  const last = first.greaterThan(0).select(LAST, CLEAR)
-  const level = encodeDistance(begin).sub(FIRST).mul(PER_OCTAVE).floor().clamp(0, last)
+  const level = encodeDistance(begin).sub(FIRST).mul(PER_OCTAVE).floor().clamp(0, CLEAR)
   const code = level.mul(2).add(isMemory.select(1, 0))
   const part = steps.div(256).min(1).mul(STEPS).round()
   return code
@@ -145,8 +146,7 @@ export function clearAir(
       .sub(2 ** FIRST)
     until.assign(nearest.equal(CLEAR).select(FAR_AWAY, begin.max(0)))
     If(wasClear.greaterThan(0), () => {
-      const behind = distanceOf(farthest.add(1)).mul(BEHIND)
-      from.assign(farthest.equal(LAST).select(FAR_AWAY, behind))
+      from.assign(distanceOf(farthest.add(1)).mul(BEHIND))
     })
   })
   return { until, from }

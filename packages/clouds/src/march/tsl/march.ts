@@ -6,7 +6,7 @@ import type { CloudSample } from '../../density/tsl/sample'
 import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
 import { FAR_AWAY, layersAt, nextLayerBoundary } from './layerBoundaries'
-import type { ClearAir } from './clearAir'
+import { FARTHEST_KNOWN, type ClearAir } from './clearAir'
 import { addPair, seenClouds, seenState, endStratum, type SeenClouds } from './seenPoints'
 import { advance, enterSteps, nextSteps, stepState } from './steps'
 
@@ -121,15 +121,21 @@ export function marchClouds(
   const skipClear = (): void => {
     if (known === undefined) return
     const { until, from, unsureUntil } = known
-    const isInLayer = entry.greaterThan(0).and(position.greaterThanEqual(unsureUntil))
-    If(isInLayer.and(first.equal(0)).and(state.isFine.not()), () => {
-      If(position.lessThan(until), () => {
-        position.assign(until)
-        state.likely.assign(0)
-      }).ElseIf(position.greaterThan(from), () => {
-        position.assign(FAR_AWAY)
-      })
-    })
+    const isInLayer = entry.greaterThan(0).and(entry.lessThan(FARTHEST_KNOWN))
+    If(
+      isInLayer
+        .and(position.greaterThanEqual(unsureUntil))
+        .and(first.equal(0))
+        .and(state.isFine.not()),
+      () => {
+        If(position.lessThan(until), () => {
+          position.assign(until)
+          state.likely.assign(0)
+        }).ElseIf(position.greaterThan(from), () => {
+          position.assign(FAR_AWAY)
+        })
+      }
+    )
   }
 
   loop('cloudSegment', isNested ? CROSSINGS * length + 1 : quality.pairs, () => {
