@@ -30,10 +30,10 @@ import { tileGrid } from './tiles/tileGrid'
 import { ellipsoidInShader, planeInShader } from './tiles/tsl/figure'
 import { writeTiles } from './tiles/writeTiles'
 
-/** Least height of the viewer above the ground that distances count from [m]. */
+/** Least height of the viewer above the ground in the choice of tiles [m]. */
 const LEAST_CLEARANCE = 0.5
 
-/** Depth of skirts where no page is missing [cells]: only rounding is hidden. With their width they slope by 68°, more than made-up ground does. */
+/** Depth of skirts where no page is missing [cells]: only rounding is hidden. With their width they slope by 68°, more than procedural ground does. */
 const SHALLOW = 1
 
 /** Height of "no ceiling", above all ground [m]. */
@@ -64,11 +64,11 @@ export class Terrain extends SeaMesh {
   readonly atmosphere: Atmosphere
   /** Heights of the ground; shared, not owned. */
   readonly source: HeightSource | PageSource
-  /** Pictures of the ground; shared, not owned; null for its made-up colours. */
+  /** Imagery of the ground; shared, not owned; null for procedural colours. */
   readonly imagery: PageImages | null
-  /** Maps of the ground's materials; shared, not owned; null for made-up ones. */
+  /** Texture maps of the ground's materials; shared, not owned; null for procedural ones. */
   readonly maps: GroundMaps | null
-  /** Picture of what the ground consists of; shared, not owned; null for none. */
+  /** Mask of the ground's materials; shared, not owned; null for none. */
   readonly mask: GroundMask | null
   /** Cells along a tile's edge. */
   readonly resolution: number
@@ -139,7 +139,7 @@ export class Terrain extends SeaMesh {
     return setOptions('Terrain', this, settings, ...SETTINGS)
   }
 
-  /** Reflectance of white in the pictures, ≥ 0 [–]. */
+  /** Reflectance of white in the imagery, ≥ 0 [–]. */
   get imageAlbedo(): number {
     return this.#uniforms.imageAlbedo.value
   }
@@ -261,8 +261,8 @@ export class Terrain extends SeaMesh {
    * Heights that are loaded arrive in later frames.
    *
    * @param camera - With `matrixWorld` and projection up to date.
-   * @param most - Pages to draw now, default: what is left of `pagesPerFrame` in this frame. Without an end no page fades in.
-   * @throws If another renderer drew the pages that was not disposed of.
+   * @param most - Pages to draw now, default: what is left of `pagesPerFrame` in this frame. With `Infinity` pages show at once, without a fade.
+   * @throws If the pages belong to another renderer that has not been disposed of.
    */
   update(renderer: Renderer, camera: Camera, most?: number): void {
     const figure = this.#figure
@@ -310,7 +310,7 @@ export class Terrain extends SeaMesh {
   /**
    * Point where a ray enters the ground or the sea, with all detail that the source has.
    *
-   * @param originECEF - In a flat world in metres along the world's axes, as the result [m].
+   * @param originECEF - Start of the ray [m]; in a flat world along the world's axes, as is the result.
    * @param directionECEF - Any length but 0.
    * @returns ECEF [m], or null if the ray misses.
    * @throws If a component is not finite or the direction is zero.

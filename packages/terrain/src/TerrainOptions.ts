@@ -12,23 +12,23 @@ import { isPageSource, type PageSource } from './pages/PageSource'
 export interface TerrainOptions {
   /** Cells along a tile's edge, even, in [4, 128], default 12: 16 has finer ridges, for an eighth more time at eye height. */
   resolution?: number
-  /** Distance at which a tile is split, in diagonals of it, in [1.2, 4], default 1.2: more has finer ridges, and as many more tiles by its square. */
+  /** Distance at which a tile is split, in diagonals of it, in [1.2, 4], default 1.2: larger values have finer ridges, and more tiles by their square. */
   detail?: number
-  /** Pictures of the ground, such as `ImageTiles`, in place of its made-up colours; null, the default, for none. */
+  /** Imagery of the ground, such as `ImageTiles`, in place of procedural colours; null, the default, for none. */
   imagery?: PageImages | null
-  /** Reflectance of white in the pictures, ≥ 0, default 1 [–]: many are brighter than what they show. */
+  /** Reflectance of white in the imagery, ≥ 0, default 1 [–]: many pictures are brighter than what they show. */
   imageAlbedo?: number
-  /** Maps of the ground's materials of one's own; null, the default, for made-up ones. */
+  /** Texture maps of the ground's materials; null, the default, for procedural ones. */
   maps?: GroundMaps | null
-  /** Picture of what the ground consists of; null, the default, where height, slope and latitude tell. */
+  /** Mask of the ground's materials; null, the default, leaves them to height, slope and latitude. */
   mask?: GroundMask | null
-  /** Leaves out what ground hides, `new TerrainHorizon()`: fewer triangles among mountains, for half a millisecond of the CPU; null, the default, for none. */
+  /** Horizon culling, `new TerrainHorizon()`: tiles that other ground hides are not drawn, for half a millisecond of the CPU; null, the default, for none. */
   horizon?: TerrainHorizon | null
   /** Surface of the sea above the ellipsoid, default 0 [m]; −Infinity for none. */
   seaLevel?: number
   /** Wind over the sea, in [0, 40], default 7 [m/s]: more of it has steeper waves, and a wider glint of the sun. */
   windSpeed?: number
-  /** Time that the sea's waves move by, default 0 [s]: yours to advance. */
+  /** Time of the sea's waves, default 0 [s]: yours to advance. */
   waveTime?: number
   /** Distance within which ground out of view casts shadows into it, default 3,000 [m]. */
   shadowDistance?: number

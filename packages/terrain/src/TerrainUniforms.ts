@@ -7,8 +7,8 @@ import type { Viewer } from './tiles/cpu/viewer'
 const reference = new Vector3()
 
 /**
- * Distance up to which flat ground has triangles twice as large: so far, and so many times the viewer's height more [m, –]. Greater: the
- * glow of a low sun at the horizon, which is drawn at vertices, is coarse.
+ * Distance up to which flat ground has triangles twice as large: so far [m], plus so many times the viewer's height [–]. Greater: the glow
+ * of a low sun at the horizon, which is found at vertices, is coarse.
  */
 const FLAT_UNTIL = 2000
 const FLAT_PER_HEIGHT = 100
@@ -19,28 +19,28 @@ export class TerrainUniforms {
   readonly reference = vector()
   /** Reference to the point from which distances to tiles count [m]. */
   readonly datum = vector()
-  /** Height of the ground below the viewer, from which others count [m]. */
+  /** Height of the ground below the viewer, from which other heights count [m]. */
   readonly groundHeight = number()
   /** Surface of the sea [m]; far below all ground where there is none. */
   readonly seaLevel = number()
   /** Variance of the sea's slopes. */
   readonly seaVariance = number()
-  /** Time that the waves move by [s]. */
+  /** Time of the waves [s]. */
   readonly waveTime = number()
-  /** Height below which ground stays about the viewer, who would be under it else while pages are missing [m]. */
+  /** Upper bound of the ground near the viewer, who might be under coarse ground otherwise while pages are missing [m]. */
   readonly ceiling = number()
   /** Depth of the skirt about a tile [cells]: more where levels of neighbours differ while pages are missing. */
   readonly skirt = number(1)
   /** Distance up to which triangles are twice as large on flat ground; twice as far none is [m]. */
   readonly flatUntil = number()
-  /** Factor on the colours of pictures [–]. */
+  /** Factor on the colours of imagery [–]. */
   readonly imageAlbedo = number(1)
   /** Radii of the ellipsoid [m]. */
   readonly radii = vector()
-  /** Largest radius over each radius: where the ellipsoid is a sphere, but for size [–]. */
+  /** Largest radius over each radius, which stretches the ellipsoid to a sphere [–]. */
   readonly stretch = vector()
 
-  /** Unit vector to the north pole, from which latitude counts: in a flat world that of its place. */
+  /** Unit vector to the north pole, from which latitude counts; in a flat world as seen from its place. */
   readonly pole = vector()
 
   constructor({ radii, maximumRadius }: Figure) {

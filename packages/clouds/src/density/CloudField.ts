@@ -25,8 +25,7 @@ import { number } from '../uniforms'
 import { windAxis, windRotation } from '../layers/wind'
 
 /**
- * Share of its coverage that a layer gains in a frame after its noise was drawn over several. 1: clouds pop
- * up (*Cumulus*, at its start).
+ * Share of its coverage that a layer gains in each frame once its noise is complete, if that took several frames. 1: clouds pop up (*Cumulus*, at its start).
  */
 const FADE_IN_STEP = 1 / 48
 
@@ -118,13 +117,13 @@ export class CloudField {
   /** Angle between neighbouring samples, that of a pixel or more: sets the level of detail [rad]. */
   readonly pixelAngle = number(1e-3)
   /**
-   * Scaled optical depth over optical depth, by which clouds let light through: `CloudLight.depthScale`
-   * where there is such a light. Clouds that are not seen one by one let the same through [–].
+   * Scaled optical depth over optical depth: `CloudLight.depthScale` where there is such a light. Unresolved clouds let through as much
+   * light as resolved ones by it [–].
    */
   readonly depthScale = number(1)
   /**
-   * Share of likely distances to clouds that a march passes over at once, in [0, 1]. Below 1 it also looks where the weather
-   * on large scales rules clouds out: for references, which must not share what they judge [–].
+   * Part of the likely distance to clouds that a march steps over at once, in [0, 1]. Below 1 it also samples where the weather on large
+   * scales rules clouds out: for reference pictures, which must not share the assumption that they judge [–].
    */
   readonly skipping = number(1)
   /** All layers' parameters and anchors: see tsl/layer.ts for what lies where. */
@@ -172,7 +171,7 @@ export class CloudField {
     if (!(layers instanceof CloudLayers)) fail(where, 'layers must be CloudLayers', layers)
     const names = ['worldMap', 'noise', 'extinction'] as const
     const { worldMap = null, noise, extinction } = checkOptions(where, options, ...names)
-    // By what it does: its class is for those who import it.
+    // Known by its method: importing its class would put that into every bundle.
     if (worldMap !== null && !worldMap?.coverageAt) {
       fail(where, 'worldMap must be a CloudWorldMap, by cloudWorldMap(), or null', worldMap)
     }

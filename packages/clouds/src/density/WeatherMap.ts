@@ -20,14 +20,14 @@ const SIZE = 384
 const REGIONAL_SIZE = 256
 
 /**
- * Greatest distance over the ground from the camera that the map has [m], and that within which its texels are about
- * as wide: 80 m below the camera, 1.3 km at its rim. Wider: clouds shift as one flies towards them (*Cockpit*).
+ * Greatest distance over the ground from the camera in the map, and the one within which its texels are nearly as wide as in its middle
+ * [m]: 80 m below the camera, 1.3 km at its rim. Wider: clouds shift as one flies towards them (*Cockpit*).
  */
 const MAXIMUM_DISTANCE = 60_000
 const EVEN = 20_000
 
 /**
- * Greatest distance over the ground from the camera at which the map has what falls [m]: texels are 90 m wide below the
+ * Greatest distance over the ground from the camera at which the map has precipitation [m]: texels are 90 m wide below the
  * camera, 9 km there. Nearer: far shafts vanish (*Rain and snow*).
  */
 const FALL_DISTANCE = 180_000
@@ -45,12 +45,11 @@ const DISPLACEMENT = 1e5
 const MARGIN = 0.5
 
 /**
- * Way of camera and clouds after which the maps are drawn anew [m]: as far, weather is looked up aside. Greater: clouds shift by
- * jerks; smaller: slower.
+ * Distance that camera and clouds may move before the maps are drawn anew [m]; look-ups are off by as much. Greater: clouds shift by jerks; smaller: slower.
  */
 const STALE = 4
 
-/** Farthest from the middle of a tile that it is looked up, with the texels next to those, in texture coordinates of the tile. */
+/** Greatest distance of a look-up from the middle of a tile, with neighbouring texels, in texture coordinates of the tile. */
 const RIM = 0.5 + 2 / SIZE
 
 /**
@@ -97,10 +96,10 @@ export class WeatherMap {
   readonly #regions: LevelTexture<Vec2>
   /** Distance within which texels of the map of regions are about as wide [m]. */
   readonly #even = number()
-  /** Camera of the last frame, from the planet's centre, and way of camera and clouds since the maps were drawn [m]. */
+  /** Camera of the last frame, from the planet's centre, and distance that camera and clouds have moved since the maps were drawn [m]. */
   #camera = new Vector3()
   #way = 0
-  /** All else that they were drawn for. */
+  /** Other inputs that they were drawn with. */
   #state: readonly unknown[] = []
   /** Two directions along the ground at the subpoint, in the mapped space. */
   readonly #axes: readonly [ReturnType<typeof vector3>, ReturnType<typeof vector3>] = [
@@ -137,7 +136,7 @@ export class WeatherMap {
     const far = position.length().min(0.98).toConst() as Float
     const flat = position.mul(even.div(far.oneMinus())).toConst() as Vec2
     const square = flat.dot(flat).min(radius.mul(radius)).toConst() as Float
-    // What the sphere falls short of the plane.
+    // Drop of the sphere below the plane.
     const drop = square.div(radius.add(radius.mul(radius).sub(square).sqrt()))
     const subpoint = x.mul(flat.x).add(y.mul(flat.y)).sub(view.up.mul(drop)).toConst() as Vec3
     const rise = altitude.sub(view.height)

@@ -39,11 +39,11 @@ export const strengthForm = {
    * from orbit; greater: the weather blurs with the distance (*World clouds*, without its map).
    */
   levelsPerOctave: 1.25,
-  /** Least variance of blurred weather that is made up for [–]. Smaller: grain far away (*World clouds*). */
+  /** Least variance of blurred weather: what is lost beyond that is not restored [–]. Smaller: grain far away (*World clouds*). */
   leastVariance: 0.05,
   /**
-   * Deviation of the weather by which edges of the filtered coverage are soft: per shape amount, and at
-   * least [–]. Greater: fields of clouds have soft rims from orbit (*World clouds from 12,000 km*).
+   * Width of the edges of the filtered coverage, in standard deviations of the weather: per shape amount, and at least [–]. Greater: fields
+   * of clouds have soft rims from orbit (*World clouds from 12,000 km*).
    */
   edgeSoftness: 0.4,
   leastEdgeSoftness: 0.05,

@@ -9,10 +9,10 @@ export const stormPlaces = {
   seed: 977,
   /** Part of a cell that a storm may stand in. 1: walls where a storm reaches beyond the next cells; 0: rows. */
   jitter: 0.8,
-  /** Distance that height z of a point over the surface counts as: its square is `away` z⁶ [cells]. Smaller: walls between storms. */
+  /** Extra distance of a storm whose point lies at a height z over the surface: its square is `away` z⁶ [cells]. Smaller: walls between storms. */
   away: 7.72,
   /**
-   * Rank of a distance d from the nearest storm, e^(−(d/scale)^power), and its exponent: as counted over the planet [cells].
+   * Scale [cells] and exponent [–] of the rank e^(−(d/scale)^power) of a distance d from the nearest storm, as counted over the planet.
    * Wrong: more or fewer storms than asked for.
    */
   scale: 0.5068,

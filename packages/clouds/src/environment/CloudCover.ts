@@ -27,7 +27,7 @@ type PlacedDeck = CloudDeck & { readonly top: number }
  * atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera, { clouds: cover })
  * ```
  *
- * It is the mean over the planet of what `cloudSkyLight` and `cloudShadow` have, with what falls from the layers; single clouds and a map of the world
+ * It is the mean over the planet of what `cloudSkyLight` and `cloudShadow` have, with the layers' precipitation; single clouds and a map of the world
  * have no part in it, nor have layers whose `shadow` is false.
  */
 export class CloudCover implements CloudedSky {

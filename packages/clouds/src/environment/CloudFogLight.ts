@@ -143,8 +143,8 @@ export class CloudFogLight implements FogOvercast {
  * cloudFogLight(mist, cloudsNode) // before the first render; `dispose()` ends it
  * ```
  *
- * Mist loses of the light that it scatters once what clouds take from the sun, and of all other light as much as level
- * ground does; distance fog all as the ground. It is the mean over some kilometres below the clouds' camera, from
+ * Height fog loses what clouds take from the sun of the light that it scatters once, and of all other light as much as level ground does;
+ * all light of distance fog changes as that on level ground. It is the mean over some kilometres below the clouds' camera, from
  * the weather alone. Where light shafts have the shadows of the clouds (`cloudAirShadow`), those count in its
  * place. Layers whose `shadow` is false have no part in it.
  *

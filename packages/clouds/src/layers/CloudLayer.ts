@@ -23,7 +23,7 @@ export interface CloudLayerParameters {
   /**
    * Exponent t of the strength ĥ^t that a column needs to reach a height, in (0, 8], with ĥ the height
    * in the layer from 0 to 1. Smaller: only the strongest columns grow tall, and tops lie at all heights;
-   * greater: nearly all of them reach the same height, as under an inversion. Storms do without it.
+   * greater: nearly all of them reach the same height, as under an inversion. Without effect on storms.
    */
   readonly profileExponent: number
   /** Amount of billows, bulges that meet in creases, in [0, 1]; 0 leaves smooth mounds. */

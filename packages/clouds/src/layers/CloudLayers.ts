@@ -12,7 +12,7 @@ const clear = { coverage: 0 }
  * ```
  */
 export class CloudLayers implements Iterable<CloudLayer> {
-  /** A shader evaluates every layer at every sample: this many fit its uniforms. */
+  /** Most layers of a sky: a shader evaluates each at every sample, by uniforms for so many. */
   static readonly maxLayers = 4
 
   readonly #layers: readonly CloudLayer[]
@@ -41,7 +41,7 @@ export class CloudLayers implements Iterable<CloudLayer> {
   }
 
   /**
-   * Takes the parameters of other layers; what is left over covers nothing then.
+   * Copies the parameters of other layers; layers that are left over cover nothing then.
    *
    * @throws Error when they are no layers, or more than here.
    */

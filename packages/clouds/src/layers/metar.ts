@@ -48,7 +48,7 @@ const MELTED = 300
 /** A group of which something is known. */
 const KNOWN = /[^/]/
 
-// What was meant as one of these two; SCTE and VNKT are aerodromes, and NIL is no report.
+// Groups that were meant as wind or clouds; SCTE and VNKT are aerodromes, and NIL is no report.
 const LIKE_WIND = /^(?:VRB|[\d/]).*(?:KT|MPS)$/
 const LIKE_CLOUD = /^(?:FEW|SCT|BKN|OVC|VV)(?![A-Z]+$)|^NIL$/
 

@@ -36,7 +36,7 @@ export function windRotation(
   target: Quaternion
 ): Quaternion {
   const speed = Math.hypot(wind.east, wind.north)
-  // Whole turns say nothing, and a sine of 1e15 neither.
+  // Without whole turns: the sine of 1e15 has no digit left.
   const angle = ((speed * seconds) / radius) % (2 * Math.PI)
   return target.setFromAxisAngle(windAxis(wind, up, _axis), -angle)
 }

@@ -12,7 +12,7 @@ export class FlashLimit {
   #sinceRise = Infinity
 
   /**
-   * Goes on in time.
+   * Advances in time.
    *
    * @param power - Light that there would be without a limit [lm].
    * @param cap - Greatest light [lm].

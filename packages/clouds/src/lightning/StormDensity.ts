@@ -32,7 +32,7 @@ const SAMPLES = 8
 const SAMPLES_OUT = 24
 /** Directions in which light gets out, over which the ways out are averaged. */
 export const DIRECTIONS = 24
-/** Scaled depth that counts as open [–]: light is as if even within. Smaller: bright rims (*Storm at night*). */
+/** Scaled depth up to which light is taken to be even [–]. Smaller: bright rims (*Storm at night*). */
 export const OPEN = 4
 /** Greatest gain of thin sides. */
 const THINNEST = 3

@@ -76,7 +76,7 @@ export class CastLight {
     return this.#hasPass ? 'pass' : this.#casters
   }
 
-  /** All of them, by their shaders. */
+  /** Key of all casters' shaders, and of the light that each is in. */
   get #casters(): string {
     const { casters, viewRays } = this.#scene
     const { night } = viewRays.field

@@ -222,7 +222,7 @@ export class CloudRenderer {
     this.accumulated.distances.value = distances
   }
 
-  /** Has what has code for storms compiled anew where layers of storms come or go, and light where casters do. */
+  /** Compiles passes with code for storms anew where layers of storms come or go, and the light's pass where casters do. */
   #compile(): void {
     const kinds = kindsOf(this.#field)
     const { version } = this.#cast

@@ -27,13 +27,13 @@ export interface FallOnPixel {
   readonly ray: Vec4
 }
 
-/** Factor of a share in [0, 1] that is kept behind a whole number, and of `packFound`'s numbers, which are of 11 bits. */
+/** Factor of a share in [0, 1] that is packed as the fraction of a whole number, and of `packFound`'s numbers, which have 11 bits. */
 const BEHIND = 0.5
 const FOUND = 2048
 
 /**
- * log₂ of ends over which a ray is left out that ends before the pixel's does, and the weight that is left: greater, and rain before a ridge
- * shows beside it, too (*Valley, all day*).
+ * Differences of log₂ ends between which a ray that ends nearer than the pixel's own loses its weight, and the weight that is left:
+ * greater, and rain before a ridge shows beside it, too (*Valley, all day*).
  */
 const SAME_END = [-0.3, -0.1] as const
 const LEAST_WEIGHT = 1e-3
@@ -62,7 +62,7 @@ export class FallPass {
     ]
   }
 
-  /** Has the passes compiled anew where casters have changed. */
+  /** Compiles the passes anew where casters have changed. */
   set version(version: string) {
     for (const { material } of this.#passes) {
       material.customProgramCacheKey = () => material.name + version

@@ -66,12 +66,12 @@ const LIGHT_CUT = 4
 const DAYLIGHT_SCALE = 1e-4
 
 /**
- * Frames in which each tile of rays is marched whole once; it shares no factor with the frames that a block takes.
+ * Frames in which each tile of rays is marched whole once; coprime to the frames that a block takes.
  * Greater: faster, and clouds come out from behind others late (*Cumulus* with "Time lapse").
  */
 export const ROUND = 13
 
-/** Part of a block that clouds may move in a frame for rays to go by what the last frame's found. Greater: near edges lag (*Cockpit*). */
+/** Part of a block that clouds may move in a frame while rays still begin where those of the last frame found clouds. Greater: near edges lag (*Cockpit*). */
 const BLOCK_PART = 0.5
 
 /** Squared displacement below which the camera [m²] and the sun's direction count as still. */
@@ -178,7 +178,7 @@ export class FrameUniforms {
   #matrices: readonly number[] = []
   /** The last frame's `cloudForms`. */
   #forms: readonly number[] = []
-  /** Way of camera and clouds against each other since the last frame [m]. */
+  /** Relative motion of camera and clouds since the last frame [m]. */
   #speed = 0
   /** Frames until history has forgotten what was before the last change of light or clouds. */
   #forgetting = 0
@@ -189,7 +189,7 @@ export class FrameUniforms {
   }
 
   /**
-   * Goes on to the next frame. Field and view must be up to date.
+   * Advances to the next frame. Field and view must be up to date.
    *
    * @param usesHistory - True if frames are accumulated.
    * @param lightVersion - Changes with the table of the light that clouds scatter.
@@ -272,7 +272,7 @@ export class FrameUniforms {
   }
 
   /**
-   * Sets what turns pixels to rays, and to places in the last frame.
+   * Sets the matrices from pixels to rays, and to places in the last frame.
    *
    * @returns True if neither the camera's place nor the clouds have moved since then.
    */

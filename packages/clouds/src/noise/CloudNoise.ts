@@ -199,12 +199,12 @@ export class CloudNoise {
    *
    * @param slices - Slices of the shape to draw, or as many others as cost the same.
    * @returns True once all texels are drawn.
-   * @throws If another renderer drew the noise that was not disposed of.
+   * @throws If the noise belongs to another renderer that has not been disposed of.
    */
   update(renderer: Renderer, slices = Infinity): boolean {
     if (renderer !== this.#renderer) {
       checkOwner('CloudNoise', this.#renderer, renderer)
-      // Textures went with the renderer before.
+      // The textures were those of the renderer before.
       if (this.#renderer !== null) this.#restart()
       this.#renderer = renderer
     }

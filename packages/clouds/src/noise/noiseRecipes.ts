@@ -21,7 +21,7 @@ export interface NoiseTerm {
 export type NoiseEncoding =
   /** ½ + `ENCODING_SCALE` z, cut off. */
   | 'normal'
-  /** Φ(z): every value as frequent as any other, to 0.015, so that a threshold of 1 − c covers the share c. */
+  /** Φ(z): uniformly distributed, to 0.015, so that a threshold of 1 − c covers the share c. */
   | 'uniform'
 
 export interface NoiseChannel {

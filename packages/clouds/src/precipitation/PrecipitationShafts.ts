@@ -38,10 +38,10 @@ export interface PrecipitationShaftsOptions {
 /** Vectors that a layer takes in the uniforms. */
 const STRIDE = 4
 
-/** Way of level light through what falls from a deck [m]. */
+/** Path of horizontal light through precipitation from a deck [m]. */
 const DECK_WIDTH = 1500
 
-/** Shortest mean length of steps of the march over the width of streaks [–], and at most [m]. Longer: virga has grain (*Virga*). */
+/** Shortest mean length of steps over the width of coarse streaks [–], and its upper bound [m]. Longer: virga has grain (*Virga*). */
 const STEP = 0.2
 const LONGEST_STEP = 1200
 
@@ -100,7 +100,7 @@ export class PrecipitationShafts {
   }
 
   /**
-   * Follows the layers of a field, whose `update` goes first.
+   * Copies the layers of a field into uniforms; the field's `update` goes first.
    *
    * @returns Count of changes other than those of wind and camera.
    */

@@ -30,7 +30,7 @@ export const fallForm = {
   fineStreaks: 0.55,
   /** Height in the layer of the billows that make them, in [0, 1]: about where cloudlets are widest (*Virga*). */
   streakHeight: 0.3,
-  /** Blur of streaks over the way by which they lag, and over the depth of fall [–]: drops differ in speed. 0: lines to the ground. */
+  /** Blur of streaks over the distance by which they lag, and over the depth of fall [–]: drops differ in speed. 0: lines to the ground. */
   lagBlur: 0.03,
   fallBlur: 0.01
 } as const

@@ -40,7 +40,7 @@ export class CascadeState {
     this.rotations = rotations.map(rotation => rotation.clone())
   }
 
-  /** [m]. */
+  /** Width of a texel [m]. */
   get texel(): number {
     return (2 * this.halfWidth) / CASCADE_SIZE
   }
@@ -51,7 +51,7 @@ export class CascadeState {
    * @param light - Direction to the light.
    * @param anchor - The plane's origin [m].
    * @param wanted - Point nearest to which the middle is put [m].
-   * @param halfWidth - [m].
+   * @param halfWidth - Half width of the cascade [m].
    * @param rotations - Rotations of the layers' noise by the wind.
    */
   moveTo(

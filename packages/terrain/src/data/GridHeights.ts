@@ -34,15 +34,15 @@ export interface GridHeightsOptions {
   north: number
   /** Units of the edges: `'degrees'`, the default, or for a flat world `'meters'`, to the east along +X and to the north along −Z. */
   units?: 'degrees' | 'meters'
-  /** Value that says that there is none; numbers that are not finite say so, too. */
+  /** Value of missing heights, default none; values that are not finite are missing, too. */
   noData?: number
-  /** Factor on the numbers, default 1 [m]. */
+  /** Factor from the values to metres, default 1 [m]. */
   scale?: number
-  /** Height far outside, default 0 [m]. */
+  /** Height far outside of the grid, default 0 [m]. */
   outside?: number
-  /** Way beyond the edges on which heights go over to that, ≥ 0, default a tenth of the grid's shorter side [m]. */
+  /** Distance beyond the edges over which heights blend to `outside`, ≥ 0, default a tenth of the grid's shorter side [m]. */
   fade?: number
-  /** Default WGS84; one of revolution. */
+  /** Ellipsoid of revolution that the grid lies on, default WGS84. */
   ellipsoid?: Ellipsoid
   /** Line that names the data's source, default ''. */
   attribution?: string
@@ -78,8 +78,8 @@ const cell = { x: 0, y: 0 }
  * scene.add(new Terrain(atmosphere, heights))
  * ```
  *
- * Coarse pages take averages: of 2 × 2 numbers, 4 × 4 and so on, around the planet as far as these divide the number of columns.
- * Beyond the edges the outermost heights go on and fade to `outside`; holes are filled from about them.
+ * Coarse pages take averages of 2 × 2 numbers, 4 × 4 and so on; on a grid around the planet as long as these divide the number of columns.
+ * Beyond the edges the outermost heights continue and fade to `outside`; holes are filled from their surroundings.
  */
 export class GridHeights implements PageSource {
   readonly lowest: number
@@ -218,7 +218,7 @@ export class GridHeights implements PageSource {
     return this.#isFlat ? Infinity : (2 * Math.PI) / this.#stepX
   }
 
-  /** Place in cells from the outer edges, of the turn that is nearest to the middle. */
+  /** Place in cells from the outer edges; of longitudes a turn apart the one nearest to the middle. */
   #cellOf(positionECEF: Vector3, target: { x: number; y: number }): void {
     if (this.#isFlat) {
       target.x = (positionECEF.x - this.#west) / this.#stepX
@@ -264,7 +264,7 @@ export class GridHeights implements PageSource {
     target.x *= shrink
     target.y *= shrink
     if (distance === 0) return target
-    // Over to the height outside.
+    // Blend to the height outside.
     const t = distance / this.#fade
     const kept = 1 - t * t * (3 - 2 * t)
     const fall = (-6 * t * (1 - t)) / this.#fade / distance

@@ -54,7 +54,7 @@ const place: GeographicPlace = { longitude: 0, latitude: 0 }
 const near: RasterSample = { value: 0, x: 0, y: 0 }
 const polar: RasterSample = { value: 0, x: 0, y: 0 }
 
-/** Makes what loads tiles. */
+/** Makes a loader of tiles from all options. */
 export type ReaderOfHeights = (options: Required<HeightTilesOptions>) => ReadTile<HeightTile>
 
 /** Height of a pixel's colour, each of 0 to 255 [m]. */
@@ -88,10 +88,10 @@ export function heightTile(
 }
 
 /**
- * Heights that are loaded in tiles, of Web Mercator or of longitude and latitude, as they are needed.
+ * Heights in tiles of Web Mercator or of longitude and latitude, loaded as they are needed.
  *
- * What is there is used: a tile that does not exist, or is corrupt, is a hole that shows the coarser one; one that fails is tried
- * again, and its page is left to its parent meanwhile. The tiles of the coarsest level stay while all of them take no more than
+ * A tile that does not exist, or is corrupt, is a hole that shows the coarser one; one that fails is tried again, and meanwhile its page is
+ * drawn with its parent's. The tiles of the coarsest level stay while all of them take no more than
  * half of the memory.
  */
 export class HeightTiles implements PageSource {
@@ -134,7 +134,7 @@ export class HeightTiles implements PageSource {
     this.minZoom = minZoom
     this.maxZoom = maxZoom
     this.attribution = all.attribution
-    // Between pixels heights may go beyond theirs.
+    // Bicubic interpolation overshoots the pixels' heights.
     this.lowest = lowest - OVERSHOOT * 1000
     this.highest = highest + OVERSHOOT * 1000
     const otherwise = Math.min(Math.max(0, lowest), highest)
@@ -156,7 +156,7 @@ export class HeightTiles implements PageSource {
     return Math.min(this.#options.steepest * distance, this.highest - this.lowest)
   }
 
-  /** Height and gradient from the finest tile that is there. */
+  /** Height and gradient from the finest tile in memory. */
   sampleAt(positionECEF: Vector3, target: HeightSample): HeightSample {
     const { radii } = this.#options.ellipsoid
     geographicPlace(positionECEF, radii, place)
@@ -216,7 +216,7 @@ export class HeightTiles implements PageSource {
     return this.#isMercator ? mercatorY(latitude) : geographicY(latitude)
   }
 
-  /** True for a row near a pole that the map has not. */
+  /** True for a row near a pole, beyond the map or close to its end. */
   #isPolar(y: number): boolean {
     return this.#isMercator && isPolar(y)
   }
@@ -228,7 +228,7 @@ export class HeightTiles implements PageSource {
     target.y = this.#rowOf(place.latitude)
   }
 
-  /** Tiles of which places need pixels. */
+  /** Keys of the tiles whose pixels some places need. */
   #keysOf(z: number, { x, y }: PagePlaces): Set<number> {
     const { size, coarsest } = this.#pyramid
     const about = new TilesAbout(2 / size, this.#store.wide)

@@ -19,7 +19,7 @@ import type { TileUrl } from './tileUrl'
 /** Options of {@link ImageTiles}. */
 export interface ImageTilesOptions extends TileOptions {
   /**
-   * Map that the tiles are of: `'mercator'`, the default, is Web Mercator, one tile at level 0; `'geographic'` has longitude and latitude for
+   * Map projection of the tiles: `'mercator'`, the default, is Web Mercator, one tile at level 0; `'geographic'` has longitude and latitude for
    * columns and rows, two tiles at level 0.
    */
   scheme?: 'mercator' | 'geographic'
@@ -34,19 +34,19 @@ interface ImageTile extends HeldTile {
 
 const place: GeographicPlace = { longitude: 0, latitude: 0 }
 
-/** Places of the four pixels about one. */
+/** Offsets of the four pixels about a place, each in its tile. */
 const pixelPlaces = new Uint32Array(4)
 
 /**
- * Pictures of the ground in tiles of XYZ, TMS or WMTS servers, loaded as they are needed.
+ * Imagery of the ground in tiles of XYZ, TMS or WMTS servers, loaded as they are needed.
  *
  * ```ts
  * const imagery = new ImageTiles('https://example.org/{z}/{x}/{y}.jpg', { maxZoom: 17, attribution: 'Who took them' })
  * scene.add(new Terrain(atmosphere, heights, { imagery }))
  * ```
  *
- * What is there is used: until a tile arrives, and where it fails, is corrupt or does not exist, the coarser one is shown. Towards the poles
- * the last row of a Web Mercator map goes on.
+ * Until a tile arrives, and where it fails, is corrupt or does not exist, the coarser one is shown. Towards the poles the last row of a Web
+ * Mercator map is repeated.
  */
 export class ImageTiles implements PageImages {
   /** Line that names the data's source. */
@@ -98,7 +98,7 @@ export class ImageTiles implements PageImages {
     const colors = new Uint8ClampedArray(4 * side * side)
     for (let i = 0; i < side * side; i++) {
       const row = Math.min(Math.max(y[i], 0), 1)
-      // What is missing, or has a hole there, leaves it to the coarser one.
+      // A missing tile, or a hole in it, shows the coarser one.
       for (let level = z; level >= this.#options.minZoom; level--) {
         if (this.#sample(level, x[i], row, colors, 4 * i)) break
       }
@@ -161,7 +161,7 @@ export class ImageTiles implements PageImages {
     return true
   }
 
-  /** Pixels of the tile that has one of them, whose place is left in `pixelPlaces`; undefined if there is none. */
+  /** Pixels of the tile that has a given pixel, whose offset is left in `pixelPlaces`; undefined if the tile is missing. */
   #pixel(z: number, column: number, row: number, n: number): Uint8ClampedArray | undefined {
     const { size } = this.#options
     const x = Math.floor(column / size)

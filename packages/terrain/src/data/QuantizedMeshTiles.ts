@@ -6,7 +6,7 @@ import type { TileUrl } from './tileUrl'
 
 /** Options of {@link QuantizedMeshTiles}. */
 export interface QuantizedMeshTilesOptions extends Omit<HeightTilesOptions, 'loadPixels'> {
-  /** Heights along a tile's edge that its triangles become, default 64. */
+  /** Heights along an edge of the grid that a tile's triangles become, default 64. */
   size?: number
   /**
    * Loads the bytes of a tile, by default with `fetch`, for instance to send a key along. Null says that there is none, as do answers

@@ -32,7 +32,7 @@ function setSlopes(t: number): void {
  * Bicubic interpolation through the pixels, with continuous slopes.
  *
  * @param pixelAt - Value of a pixel, any column and row: those beyond the edges too.
- * @param x - Place in pixels: whole numbers are centres.
+ * @param x - Place in pixels, like `y`: whole numbers are centres.
  * @see Catmull & Rom 1974, "A class of local interpolating splines", §4: cubic, with tension 1/2
  */
 export function sampleRaster(

@@ -26,7 +26,7 @@ export class TilePyramid {
   /**
    * @param size - Pixels along a tile's edge.
    * @param coarsest - Level that ends the search.
-   * @param otherwise - Height where nothing is there [m].
+   * @param otherwise - Height where no level has one [m].
    * @param wide - Tiles of level 0 from west to east.
    */
   constructor(

@@ -48,7 +48,7 @@ export class TileRequests<T> {
     this.#options = options
   }
 
-  /** Keys that somebody waits for. */
+  /** Number of keys that somebody waits for. */
   get size(): number {
     return this.#requests.size
   }

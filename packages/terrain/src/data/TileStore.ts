@@ -24,7 +24,7 @@ export interface TileOptions {
   backOff?: number
   /** Line that names the data's source, default ''. */
   attribution?: string
-  /** Default WGS84; one of revolution. */
+  /** Ellipsoid of revolution that the tiles lie on, default WGS84. */
   ellipsoid?: Ellipsoid
   /**
    * Loads the pixels of a picture, by default with the browser's own means. Null says that there is none, as do answers 204,
@@ -137,7 +137,7 @@ export class TileStore<T extends HeldTile> {
     return { count: size, loading: this.#requests.size, bytes }
   }
 
-  /** Level whose pixels are as fine as steps [m], those of the equator everywhere: neighbouring pages shall agree. */
+  /** Level whose pixels at the equator are as fine as a spacing [m]; it counts at all latitudes, so that neighbouring pages agree. */
   levelOf(spacing: number): number {
     const { ellipsoid, size, minZoom, maxZoom } = this.#options
     const pixel = (2 * Math.PI * ellipsoid.maximumRadius) / (this.wide * size)
@@ -224,7 +224,7 @@ export class TilesAbout {
   ) {}
 
   /**
-   * Adds those of a place.
+   * Adds the tiles about a place.
    *
    * @param x - Column in [0, 1), `y` row in [0, 1], of the whole map.
    */

@@ -24,12 +24,12 @@ export interface GeoTIFFHeightsOptions extends Pick<
   GridHeightsOptions,
   'scale' | 'outside' | 'fade' | 'ellipsoid' | 'attribution'
 > {
-  /** Number that says that there is none, default the file's own. */
+  /** Value of missing heights, default the file's own. */
   noData?: number
   /** Part that is read, default all: left, top, right and bottom in whole pixels from the north-west corner. */
   window?: [left: number, top: number, right: number, bottom: number]
   /**
-   * Easting and northing that the world's origin stands on, for a flat world and a file of metres; default the middle of what is read [m].
+   * Easting and northing of the world's origin, for a flat world and a file of metres; default the middle of what is read [m].
    */
   origin?: [easting: number, northing: number]
   /** Gives up reading. */
@@ -67,7 +67,7 @@ const METRES: Partial<Record<number, number>> = { 9001: 1, 9002: 0.3048, 9003: 1
  * ```
  *
  * A file of longitude and latitude lies on the planet; one of metres or feet along east and north, such as of UTM, is for a flat world, about
- * `origin`. Pixels may stand for areas or points. Heights in feet become metres if the file says so; `scale` is by default that.
+ * `origin`. Pixels may stand for areas or points. Heights in feet become metres if the file says so: that is the default of `scale`.
  *
  * @param image - First image of the file, north up; its first channel is read.
  * @throws If the image is turned, says nothing of where it is or has other units, or an option is unknown or out of its range.

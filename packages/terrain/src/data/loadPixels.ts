@@ -8,7 +8,7 @@ export interface Pixels {
 }
 
 /**
- * Answers of a server after which it need not be asked again. 403 is among them: storage that nobody may list gives it for
+ * HTTP statuses after which a tile is not asked for again. 403 is among them: storage that nobody may list gives it for
  * files that do not exist. 401 is not: a name or a key may come later.
  */
 export const GONE: ReadonlySet<number> = new Set([204, 400, 403, 404, 410])

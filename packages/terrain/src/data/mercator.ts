@@ -1,7 +1,7 @@
 /** Latitude at which the square of Web Mercator ends [rad]. */
 export const MERCATOR_LIMIT = Math.atan(Math.sinh(Math.PI))
 
-/** Latitude from which on heights go over to those of the coarsest level, whose rows have few tiles [rad]. */
+/** Latitude from which on heights blend to those of the coarsest level, whose rows have few tiles [rad]. */
 export const POLAR = MERCATOR_LIMIT - 0.01
 
 /** Column of a longitude: 0 at −180°, 1 at 180°. */

@@ -1,13 +1,13 @@
 import { Vector3 } from 'three'
 import type { PageRequest } from '../pages/PageSource'
 
-/** Steps between places that are found exactly. */
+/** Steps between places that are projected exactly. */
 const BLOCK = 10
 
-/** Longest such step between which the others are linear, to 0.1 m at 45° of latitude and 0.5 m at 80° [m]. */
+/** Longest distance of exact places between which the others are interpolated: within 0.1 m at 45° of latitude and 0.5 m at 80° [m]. */
 const LONGEST = 2000
 
-/** Sine of the latitude up to which places between exact ones are linear [–]. */
+/** Sine of the latitude up to which places between exact ones are interpolated [–]. */
 const LINEAR_TO = 0.98
 
 /** Coordinates of a page's places on a map. */

@@ -12,7 +12,7 @@ export interface QuantizedMesh {
   }
 }
 
-/** Way that a triangle reaches beyond its edges, so that no centre between two of them is lost [pixels]. */
+/** Margin of a triangle beyond its edges, so that no pixel centre between two triangles is lost [pixels]. */
 const MARGIN = 1e-3
 
 /**

@@ -47,14 +47,14 @@ export interface GroundBounds {
  * walks on.
  */
 export interface HeightSource extends GroundBounds {
-  /** Whole number ≥ 0, default 0: another one, other patches of grass, rock and forest. */
+  /** Seed of the patches of grass, rock and forest, a whole number ≥ 0, default 0. */
   readonly seed?: number
 
   /**
    * Height and gradient in a shader.
    *
    * @param point - On the ellipsoid.
-   * @param shortest - Detail of a shorter wavelength than this is left out, of twice this and more is whole [m].
+   * @param shortest - Shortest wavelength of detail [m]: what is shorter is left out, twice that and more has its full strength.
    * @returns Gradient (xyz) [–] and height (w) [m].
    */
   sample(point: SurfacePoint, shortest: Float): Vec4

@@ -22,7 +22,7 @@ import { mountains as mountainNodes } from './tsl/mountains'
 export interface MountainHeightsOptions {
   /** Height of ridges over the valleys about them, in (0, 20,000], default 4,200 [m]. */
   relief?: number
-  /** Whole number in [0, 1e6], default 0: another one, another planet. */
+  /** Seed of the planet, a whole number in [0, 1e6], default 0. */
   seed?: number
 }
 
@@ -40,8 +40,8 @@ const total = (count: number, amplitude: (octave: number) => number): number =>
   Array.from({ length: count }, (_, octave) => amplitude(octave)).reduce((a, b) => a + b)
 
 /**
- * Heights of a made-up planet, from a function: continents, belts of mountains, hills and plains, ridges and valleys down to 4 m. Not a byte
- * is loaded, and the CPU knows every height.
+ * Heights of a procedural planet: continents, belts of mountains, hills and plains, ridges and valleys down to 4 m. No data is loaded, and
+ * the CPU knows every height.
  *
  * ```ts
  * const terrain = new Terrain(atmosphere, new MountainHeights({ seed: 3 }))
@@ -50,7 +50,7 @@ const total = (count: number, amplitude: (octave: number) => number): number =>
 export class MountainHeights implements HeightSource {
   /** Height of ridges over the land about them [m]. */
   readonly relief: number
-  /** Whole number: another one, another planet. */
+  /** Seed of the planet. */
   readonly seed: number
   readonly lowest: number
   readonly highest: number

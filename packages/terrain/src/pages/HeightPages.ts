@@ -11,10 +11,10 @@ import { PageBaker, spacingOf } from './PageBaker'
 import type { PageImages } from './PageImages'
 import { isPageSource, type PageSource } from './PageSource'
 
-/** Selections after which a page that none came by may be given to another tile: several cameras draw in turn. */
+/** Selections without use after which a page may be evicted: several cameras draw in turn. */
 const KEEP_FOR = 8
 
-/** Selections after which heights that nobody asked for again are not waited for. */
+/** Selections without a request after which loading heights are given up. */
 const WAIT_FOR = 60
 
 /** Selections after which heights that failed are asked for again. */
@@ -44,7 +44,7 @@ export class HeightPages {
   readonly #baker: PageBaker
   readonly #images: ImageLoader | null
   #renderer: Renderer | null = null
-  /** Tiles by the place of their page. */
+  /** Tiles by the slot of their page. */
   readonly #owners: (Tile | null)[]
   readonly #loading = new Map<Tile, Loading>()
   /** Selections at which tiles' heights failed. */
@@ -83,11 +83,11 @@ export class HeightPages {
   }
 
   /**
-   * Sees to it that whole faces have pages.
+   * Makes sure that whole faces have pages.
    *
    * @param selection - Number of the last selection.
    * @returns True if all pages were lost, with another renderer.
-   * @throws If another renderer drew the pages that was not disposed of, or the source gave something else than heights.
+   * @throws If the pages belong to another renderer that has not been disposed of, or the source gave something else than heights.
    */
   begin(renderer: Renderer, roots: readonly Tile[], selection: number): boolean {
     if (this.#error !== null) throw this.#error
@@ -107,13 +107,13 @@ export class HeightPages {
     return isNew
   }
 
-  /** True if no page comes that is missing: its heights fail, or there is no room and stays none. */
+  /** True if missing pages will not come: their heights fail, or all pages of the atlas are in use. */
   get isStuck(): boolean {
     if (this.#refused > 0) return this.#refused > KEEP_FOR
     return this.#loading.size === 0 && this.#images?.isWaiting !== true
   }
 
-  /** True if a whole face that the last selection came by is still flat. */
+  /** True if a whole face in the last selection is still flat. */
   isFlat(selection: number): boolean {
     return [...this.#flat].some(({ lastDrawn }) => lastDrawn === selection)
   }
@@ -264,7 +264,7 @@ export class HeightPages {
     }
   }
 
-  /** A place for a page: a free one, or that of the tile longest unused; −1 if all are in use. */
+  /** Slot for a page: a free one, or that of the least recently used tile; −1 if all are in use. */
   #place(selection: number): number {
     let oldest = selection - KEEP_FOR
     let place = -1

@@ -8,7 +8,7 @@ import type { PageAtlas } from './PageAtlas'
 /** Texels of a row are a multiple of this: WebGPU copies rows of so many bytes. */
 const ALIGNMENT = 16
 
-/** Heights of pages' vertices on their way to the CPU: four to a texel, a page to a row. */
+/** Read-back of pages' vertex heights to the CPU: four to a texel, a page to a row. */
 export class HeightReadback {
   readonly target: RenderTarget
   /** Four heights of a page. */
@@ -51,7 +51,7 @@ export class HeightReadback {
     this.#tiles.push(tile)
   }
 
-  /** Tells the tiles that were added the heights of their pages, which were drawn last, once they have come. */
+  /** Reads back the pages that were drawn last: tiles that were added have their `heights` some frames later. */
   read(renderer: Renderer): void {
     const count = this.#tiles.length
     if (count === 0) return

@@ -3,10 +3,10 @@ import type { Tile } from '../tiles/Tile'
 import type { PageImages } from './PageImages'
 import type { PageRequest } from './PageSource'
 
-/** Selections that a page waits for its picture; then it is drawn with what is there. */
+/** Selections that a page waits for its picture; then it is drawn with what has arrived. */
 const PATIENCE = 30
 
-/** Selections after which pictures that nobody asked for again are not waited for. */
+/** Selections without a request after which loading pictures are given up. */
 const WAIT_FOR = 60
 
 /** Selections after which a picture that failed is asked for again. */
@@ -41,7 +41,7 @@ export class ImageLoader {
   }
 
   /**
-   * Colours to draw a new page with; undefined while it is worth to wait.
+   * Colours to draw a new page with; undefined while waiting for better ones pays.
    *
    * @param isPatient - False for pages that must be drawn now.
    * @throws If the source gives something else than colours.
@@ -93,9 +93,9 @@ export class ImageLoader {
   }
 
   /**
-   * Pages that were drawn with less than they could be, and their colours now.
+   * Redraws pages whose colours have become better since they were drawn.
    *
-   * @param redraw - Draws the colours of a page that is there.
+   * @param redraw - Draws the colours of a page of the atlas.
    */
   update(selection: number, redraw: (tile: Tile, colors: Uint8ClampedArray) => void): void {
     let redrawn = 0

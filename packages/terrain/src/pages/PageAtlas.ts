@@ -98,7 +98,7 @@ export class PageAtlas {
     this.images = hasImages ? pages('images', this.surfaceSide, UnsignedByteType) : null
   }
 
-  /** Has the next drawing go to a page alone. */
+  /** Sets viewport and scissor of a render target to one page. */
   aim(drawn: RenderTarget, slot: number): void {
     const side = drawn.width / this.columns
     const x = (slot % this.columns) * side

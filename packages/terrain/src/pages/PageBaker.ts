@@ -32,7 +32,7 @@ export const spacingOf = ({ extent }: Tile, { maximumRadius }: Figure, steps: nu
 /** Draws pages, many at once, in two passes. */
 export class PageBaker {
   readonly #quads: PageQuads
-  /** Way of heights to the CPU; null if nobody asks for them. */
+  /** Read-back of heights to the CPU; null if nobody asks for them. */
   readonly #readback: HeightReadback | null
   /** Heights that were loaded, of one page; null if they come from a function. */
   readonly #loaded: DataTexture | null = null
@@ -117,7 +117,7 @@ export class PageBaker {
     } else if (this.#quads.isFull) this.flush(renderer)
   }
 
-  /** Draws the pages that wait; for a horizon their tiles are told the heights some frames later. */
+  /** Draws the pages that wait; with a read-back their tiles have the heights some frames later. */
   flush(renderer: Renderer): void {
     this.#quads.draw(renderer)
     this.#readback?.read(renderer)

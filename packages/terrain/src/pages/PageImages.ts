@@ -8,12 +8,12 @@ export interface PageImage {
   readonly isWhole: boolean
 }
 
-/** Pictures of a planet's ground, that may take time to arrive. */
+/** Imagery of a planet's ground that may take time to arrive. */
 export interface PageImages {
   /** Line that names the data's source. */
   readonly attribution?: string
 
-  /** Colours that are there now, coarse ones or none if need be. */
+  /** Colours in memory now: coarse ones, or none, where finer ones have not arrived. */
   imageOf(request: PageRequest): PageImage
 
   /**

@@ -10,7 +10,7 @@ export interface PageRequest {
   /** Centre of the tile on the face, in (−1, 1), like `y`. */
   readonly x: number
   readonly y: number
-  /** Heights along an edge. */
+  /** Number of heights along an edge. */
   readonly side: number
   /** Distance between neighbours, at most [m]. */
   readonly spacing: number

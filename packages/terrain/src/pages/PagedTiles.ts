@@ -8,7 +8,7 @@ import { HeightPages } from './HeightPages'
 import type { PageImages } from './PageImages'
 import type { PageSource } from './PageSource'
 
-/** Tiles that there is room for. */
+/** Most tiles in a drawing. */
 export const CAPACITY = 3000
 
 /** Factor on the pages in a frame until the first picture is full. */
@@ -17,7 +17,7 @@ const FIRST_PAGES = 32
 /** Frames in which a page takes the place of its parent's. */
 const FADE_FRAMES = 10
 
-/** Levels that the ground is too coarse by from which on pages do not fade in: after a leap. */
+/** Levels of missing detail from which on pages show without a fade: the camera has leapt. */
 const LEAP = 4
 
 /** Longest side of a cell of the finest tiles [m]. */
@@ -32,7 +32,7 @@ export class PagedTiles {
   pagesPerFrame = 1
   /** True if nothing is missing in the last selection, and all pages have faded in. */
   isFull = false
-  /** Levels that the ground stayed too coarse by in the last picture that was as full as it gets; null before the first. */
+  /** Levels of detail that the last picture lacked once it was as full as it gets; null before the first. */
   #lastLag: number | null = null
   /** Frame of the renderer, and pages that may still be drawn in it. */
   #frame = -1
@@ -61,7 +61,7 @@ export class PagedTiles {
   /**
    * Chooses tiles for a viewer and draws pages.
    *
-   * @param most - Pages to draw, default: what is left of `pagesPerFrame` in this frame. Without an end no page fades in.
+   * @param most - Pages to draw, default: what is left of `pagesPerFrame` in this frame. With `Infinity` pages show at once, without a fade.
    */
   update(renderer: Renderer, viewer: Viewer, most?: number): void {
     const { tree, pages, selection } = this

@@ -4,7 +4,7 @@ import { figureOf, type GroundSpace } from '../tiles/cpu/figure'
 
 /** Ground of a planet that rays hit and feet stand on; a `Terrain` is one. */
 export interface Ground {
-  /** Its ellipsoid and where that is in the world, or that the world is flat. */
+  /** Ellipsoid and its place in the world, or that the world is flat. */
   readonly atmosphere: GroundSpace
   /** Heights over the ellipsoid, or in a flat world over y = 0. */
   readonly source: GroundBounds

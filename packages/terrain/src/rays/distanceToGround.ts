@@ -3,7 +3,7 @@ import type { HeightSample } from '../heights/HeightSource'
 import { figureOf, isFlat } from '../tiles/cpu/figure'
 import type { Ground } from './Ground'
 
-/** Length to which a hit is found [m]. */
+/** Precision of a hit along the ray [m]. */
 const PRECISION = 1e-4
 
 /** Shortest step [m], and per distance from the ray's start: what is thinner may be missed. */
@@ -13,7 +13,7 @@ const LEAST_SHARE = 1e-8
 /** Steps after which the shortest one has doubled: a ray that skims the ground for long shall end. */
 const PATIENCE = 1000
 
-/** Growth of ways on the ellipsoid, for those that lie below it. */
+/** Factor on distances along the ellipsoid, for ground that lies below it. */
 const DEPTH = 1.01
 
 const position = new Vector3()
@@ -30,7 +30,7 @@ interface Probe {
   cosUp: number
 }
 
-/** Looks at the point of a ray at a distance [m]. */
+/** Height, clearance and inclination of a ray at a distance [m]. */
 function probe(
   { atmosphere, source, seaLevel }: Ground,
   highest: number,
@@ -65,7 +65,7 @@ function probe(
  * @param direction - Unit vector.
  * @param near - Distance at which the ray begins, ≥ 0 [m].
  * @param far - Distance at which it ends; may be infinite [m].
- * @returns [m], or null if it does not.
+ * @returns [m], or null if the ray misses.
  */
 export function distanceToGround(
   ground: Ground,

@@ -24,7 +24,7 @@ import { WATER_FRESNEL } from './tsl/seaSurface'
 /** Reflectance of ground at normal incidence: that of three's standard materials. */
 const GROUND_FRESNEL = 0.04
 
-/** Unit vector to the viewer, in the view; three's own would be one more value that every triangle hands to its pixels. */
+/** Unit vector to the viewer, in view space; three's own would be one more varying. */
 export const viewDirection = (): Vec3 =>
   Fn(({ camera }: NodeBuilder) =>
     (camera as unknown as { isOrthographicCamera?: boolean }).isOrthographicCamera === true
@@ -41,7 +41,7 @@ interface LightingContext {
   readonly reflectedLight: { readonly indirectDiffuse: Variable }
 }
 
-/** Colour of what is no metal. */
+/** Diffuse albedo. */
 const albedo = (): Vec3 => (diffuseColor as unknown as { rgb: Vec3 }).rgb
 
 /** Part of three's builder that is used. */
@@ -62,17 +62,17 @@ interface ReflectedLight {
 }
 
 /**
- * Light as of three's standard materials, and what the sides of hollows throw at each other of the sun's light and the sky's.
+ * Light of three's standard materials, with interreflection: light of sun and sky that the sides of hollows throw at each other.
  *
- * Where no environment is mirrored, highlights are of single scattering: what more would add is a thousandth of the light on ground, for a
- * look-up and matrices of metals in each pixel.
+ * Where no environment is mirrored, highlights are of single scattering: multiple scattering would add a thousandth of the light on ground,
+ * for a look-up and matrices of metals in each pixel.
  */
 class GroundLightingModel extends PhysicalLightingModel {
   /** Irradiance of the ground about a pixel by lights that have a direction. */
   #sunlight: Variable | null = null
   #mirrors = false
 
-  /** @param ground - Normal of the ground without its stones, in the view. */
+  /** @param ground - Normal of the ground without its stones, view space. */
   constructor(readonly ground: Vec3) {
     super()
   }
@@ -150,7 +150,7 @@ export class GroundMaterial extends MeshStandardNodeMaterial {
   /** See `FineMaterial` of `@welkin/atmosphere`: cells are small beside their distance. */
   readonly airAtVertices = airAtVertices
 
-  /** Normal of the ground without its stones, in the view; null for the normal of the pixel. */
+  /** Normal of the ground without its stones, view space; null for the normal of the pixel. */
   ground: Vec3 | null = null
 
   /** Share of a pixel that is water; null for none. */

@@ -46,7 +46,7 @@ export abstract class SeaMesh extends Mesh<InstancedBufferGeometry, MeshStandard
     this.#sea.seaVariance.value = seaSlopeVariance(value)
   }
 
-  /** Time that the sea's waves move by [s]. */
+  /** Time of the sea's waves [s]. */
   get waveTime(): number {
     return this.#sea.waveTime.value
   }

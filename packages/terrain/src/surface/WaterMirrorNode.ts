@@ -11,14 +11,14 @@ import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Float, Vec3 } from '../tsl-types'
 import { waterFresnel } from './tsl/seaSurface'
 
-/** Distances from and beyond which not the viewer's sky is mirrored, but the even one over the water [m]. */
+/** Distances between which the mirrored sky goes over from the viewer's to an even one over the water [m]. */
 const NEAR = 3e3
 const FAR = 3e4
 
 /** Sine of the lowest elevation that is mirrored: waves hide what is lower from each other. */
 const LOWEST = 0.02
 
-/** Part of the waves' slope by which those that a low viewer sees lean towards them. */
+/** Lean of the waves towards a low viewer, who sees only their near sides, in standard deviations of their slope [–]. */
 const LEAN = 0.6
 
 /** Water that mirrors. */
@@ -34,7 +34,7 @@ export interface MirroringWater {
 type Variable = Vec3 & { assign(value: Vec3): void }
 
 /**
- * Sky that water mirrors, without the sun, which is a light. From near it is the one that the viewer has above, from far away as even as
+ * Sky that water mirrors, without the sun, which is a light. Near by it is the viewer's sky in the mirrored direction, far away the even
  * light of the sky on level ground. It is black where the scene has an environment: that is mirrored then.
  */
 export class WaterMirrorNode extends AtmosphereNode {

@@ -1,4 +1,4 @@
-// Rules by which the ground consists of what it does, for the shader and the CPU. Ranges are those of smooth steps.
+// Constants of the rules that choose the ground's materials, for the shader and the CPU. Pairs are ranges of smooth steps.
 
 /**
  * Height of the snow line at the equator, and what it loses by the second and the fourth power of the latitude's sine [m]: 5,200 m at the equator,
@@ -8,16 +8,19 @@ export const SNOW_LINE = 5200
 export const SNOW_BY_SQUARE = 2000
 export const SNOW_BY_FOURTH = 3600
 
-/** Height by which snow lies higher where it is dry, per climate, and on slopes to the equator, per slope [m]. */
+/** Rise of the snow line where it is dry, per unit of climate, and on slopes that face the equator, per unit of slope [m]. */
 export const DRY_SNOW = 500
 export const SUNNY_SNOW = 350
 
-/** Heights over the snow line between which snow comes, and what patches change of it [m]; slopes on which it ends [1 − cosine]. */
+/** Heights over the snow line between which snow begins, and their shift per unit of patches [m]; slopes between which it ends [1 − cosine]. */
 export const SNOW_OVER = [-150, 250] as const
 export const SNOW_PATCH = 420
 export const SNOW_STEEPNESS = [0.26, 0.42] as const
 
-/** Height of the snow line over the tree line, and what patches change of it; heights over it between which woods end, and over the sea [m]. */
+/**
+ * Height of the snow line over the tree line, and its shift per unit of patches; heights over the tree line between which woods end, and
+ * over the sea between which they begin [m].
+ */
 export const TREES_BELOW = 1100
 export const TREES_PATCH = 350
 export const TREES_END = [-150, 50] as const
@@ -50,11 +53,11 @@ export const SLOPES = [0.0015, 0.03] as const
 /** Moisture that a meadow lacks of what a wood has at least [–]. More: woods have no edges from 1 km and 10 km (*Terrain*). */
 export const MOIST = 0.1
 
-/** Slopes between which rock comes, and what patches change of them [1 − cosine]. */
+/** Slopes between which rock begins, and their shift per unit of patches [1 − cosine]. */
 export const ROCK_STEEPNESS = [0.13, 0.24] as const
 export const ROCK_PATCH = 0.05
 
-/** Heights over the sea between which sand ends, and what patches change of them; heights over the tree line between which scree comes [m]. */
+/** Heights over the sea between which sand ends, and their shift per unit of patches; heights over the tree line between which scree begins [m]. */
 export const SHORE = [2, 9] as const
 export const SHORE_PATCH = 4
 export const SCREE = [-50, 450] as const

@@ -1,4 +1,4 @@
-/** Length that the pattern of waves repeats in along each axis of ECEF: a step of references [m]. */
+/** Period of the waves' pattern along each axis of ECEF: a step of references [m]. */
 const PERIOD = 256
 
 /** Longest and shortest wave [m], and their number. */

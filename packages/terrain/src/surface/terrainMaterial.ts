@@ -42,13 +42,13 @@ import { WaterMirrorNode } from './WaterMirrorNode'
 const isShadowPass = (material: object): boolean =>
   (material as { isShadowPassMaterial?: boolean }).isShadowPassMaterial === true
 
-/** A value that vertices assign and pixels read. */
+/** Varying: vertices assign it, pixels read it. */
 const handedOn = <T extends Node>(type: string, name: string): T & { assign(value: T): void } =>
   varyingProperty(type as never, `welkinTerrain${name}`) as unknown as T & {
     assign(value: T): void
   }
 
-/** Colour of a picture with the light of stones and blades, and the made-up one where there is no picture. */
+/** Colour of imagery with the light of stones and blades, and the procedural colour where there is no imagery. */
 const pictured = ({ rgb, a }: Vec4, made: Vec3, detail: Float): Vec3 => {
   const linear = sRGBTransferEOTF(rgb.div(a.max(1 / 255))) as unknown as Vec3
   return mix(made, linear.mul(detail), a)

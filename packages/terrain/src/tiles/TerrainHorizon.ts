@@ -14,19 +14,19 @@ const BIN = 4 / BINS
 /** Level from which on tiles hide others: larger ones are bent, and few. */
 const COARSEST = 6
 
-/** Length of a chord of the circle from which on ground is too near to hide anything [quarters of a turn]. */
+/** Azimuth that a line on the ground spans, from which on it is too near to hide anything [quarters of a turn]. */
 const LONGEST = 0.5
 
-/** Slope of a line of sight over the horizon from which on ground counts as hidden: a fifth of a pixel at 1080 lines [–]. */
+/** Slope by which lines of sight to hidden ground must pass below the horizon: a fifth of a pixel at 1080 lines [–]. */
 const MARGIN = 2e-4
 
 /** Distance from which on tiles hide others and are hidden, in heights of the viewer above the ground. Less: hardly more is hidden, for twice the time. */
 const NEAREST = 30
 
-/** Height of a viewer above the ground up to which it is looked for what is hidden [m]. */
+/** Height of the viewer above the ground up to which hidden tiles are looked for [m]. */
 const HIGHEST = 2e4
 
-/** Choices of tiles to pass over after one in which nothing was hidden: a viewer high up sees all. */
+/** Selections without a search after one in which nothing was hidden: a viewer high up sees all. */
 const REST = 15
 
 /** While pages are missing, ground near the viewer is drawn under a ceiling: steepest lines of sight that it leaves alone [–], from so many heights of the viewer on. */
@@ -88,7 +88,7 @@ function leaveOut(selection: TileSelection, hidden: ReadonlySet<Tile>, isKept: b
 }
 
 /**
- * Horizon that ground makes about a viewer, by which a terrain leaves out tiles behind it:
+ * Horizon culling: a terrain does not draw tiles that other ground hides from the viewer.
  *
  * ```ts
  * const terrain = new Terrain(atmosphere, heights, { horizon: new TerrainHorizon() })
@@ -101,13 +101,13 @@ export class TerrainHorizon {
   /** Slope of the line of sight to the horizon, by azimuth [–]. */
   readonly #slopes = new Float64Array(BINS)
   readonly #reliefs = new WeakMap<Tile, Relief>()
-  /** Choices of tiles for which it is not looked whether anything is hidden. */
+  /** Selections left without a search. */
   #rest = 0
 
   #figure!: Figure
   #resolution = 0
 
-  /** Way of the heights of a terrain's pages to the CPU. */
+  /** Read-back of the heights of a terrain's pages to the CPU. */
   readback(atlas: PageAtlas, rows: number): HeightReadback {
     return new HeightReadback(atlas, rows)
   }

@@ -21,22 +21,22 @@ export class Tile {
   readonly edges: readonly Vector3[]
   /** Unit vector to the centre where the ellipsoid is the unit sphere. */
   readonly direction: Vector3
-  /** Angle at the planet's centre that the tile reaches from its own, in the same space [rad]. */
+  /** Angle at the planet's centre between the tile's centre and its farthest corner, in the same space [rad]. */
   readonly spread: number
   /** Bounds of its heights, once they are loaded those of its page [m]. */
   lowest: number
   highest: number
   /** Four tiles of half its size; null before any is needed. */
   children: Tile[] | null = null
-  /** Number of the last selection that came by. */
+  /** Number of the last selection that visited it. */
   lastUse = 0
   /** Number of the last selection that it could be seen in. */
   lastDrawn = 0
   /** Distance from the viewer then, see `distanceTo` [m]. */
   distance = 0
-  /** Size as seen [rad], or thereabouts, twice that in view: for the order in which missing pages come. */
+  /** Approximate angular size [rad], twice that in view: the order in which missing pages are drawn. */
   urgency = 0
-  /** Place of its page in the atlas; −1 without one. */
+  /** Slot of its page in the atlas; −1 without one. */
   slot = -1
   /** Heights of its vertices as drawn, rows first, once they have come back from the GPU; null before [m]. */
   heights: Float32Array | null = null
@@ -104,7 +104,7 @@ export class Tile {
     return 2 ** -this.level
   }
 
-  /** Has its page, if there is one, take more of the parent's place; once in a frame unless at once. */
+  /** Fades its page, if there is one, further in over the parent's; once in a frame unless at once. */
   show(frame: number, step: number): void {
     if (this.slot < 0 || (step < 1 && frame === this.#frame)) return
     this.#frame = frame

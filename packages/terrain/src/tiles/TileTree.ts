@@ -4,14 +4,14 @@ import { facesOf, type Figure } from './cpu/figure'
 import { horizonAngle, type Viewer } from './cpu/viewer'
 import { Tile } from './Tile'
 
-/** Selections after which a tile that none came by is forgotten. */
+/** Selections without a visit after which a tile is forgotten. */
 const FORGET_AFTER = 240
 
 /** Selections between two searches for tiles to forget. */
 const FORGET_EVERY = 60
 
 /**
- * Factor on the distance at which a tile out of view is split, which casts shadows alone: two levels coarser. 1: at eye height there is no room for
+ * Factor on the distance at which a tile is split that is out of view and only casts shadows: two levels coarser. 1: at eye height there is no room for
  * the pages of all of them, and ground in view is left coarse (*Terrain*, `castShadow`).
  */
 const UNSEEN = 0.25
@@ -133,7 +133,7 @@ export class TileTree {
   }
 
   /**
-   * Lets go of tiles that nobody has come by for long, and that have no page.
+   * Forgets tiles that no selection has visited for long, and that have no page.
    *
    * @returns True if the tile itself may go.
    */

@@ -36,7 +36,7 @@ const DEFAULTS: Required<WalkerOptions> = {
 const STEP = 1 / 60
 const LONGEST_UPDATE = 1
 
-/** Times in which the level speed comes and goes: on the ground, in water and in the air [s]. */
+/** Time constants of the horizontal speed: on the ground, in water and in the air [s]. */
 const EASE = { standing: 0.1, swimming: 0.35, falling: 2 } as const
 
 /** Friction of a slide, per tangent of the steepest slope that feet hold on [–]. */
@@ -52,7 +52,7 @@ const BUOYANCY = 3
 /** Height over the ground at which feet that are put there stand on it [m]. */
 const ON_GROUND = 0.01
 
-/** Fall of the ground in a step from which on feet leave it [m], and the same per way, in steepest slopes. */
+/** Drop of the ground in a step from which on feet leave it: so much [m], plus so many times the steepest slope over the step [–]. */
 const LEAVING = 0.03
 const LEAVING_SLOPES = 2
 
@@ -200,7 +200,7 @@ export class Walker {
   }
 
   /**
-   * Goes on by some time.
+   * Advances by some time.
    *
    * @param direction - Direction to walk in, world axes: its level part counts, up to a length of 1 for the full speed.
    * @param isJumping - True while a jump is asked for.
@@ -271,7 +271,7 @@ export class Walker {
     this.#settle()
   }
 
-  /** Eases the velocity to the wished one, and leaves the way in `way`: exact for a wish that stays. */
+  /** Eases the velocity to the wished one, and leaves the displacement in `way`: exact for a wish that stays. */
   #stride(ease: number, seconds: number): void {
     const { gradient } = this.#here
     const velocity = this.levelVelocity
@@ -294,7 +294,7 @@ export class Walker {
     }
   }
 
-  /** Slides down by gravity against friction; leaves the way in `way`. */
+  /** Slides down by gravity against friction; leaves the displacement in `way`. */
   #slide(seconds: number): void {
     const { gradient, slope } = this.#here
     const velocity = this.levelVelocity
@@ -306,7 +306,7 @@ export class Walker {
     way.add(velocity).multiplyScalar(seconds / 2)
   }
 
-  /** Takes from way and velocity what leads up too steep a slope, and finds the ground at the way's end. */
+  /** Takes from displacement and velocity the part that leads up too steep a slope, and finds the ground at the end. */
   #avoidCliffs(): void {
     for (let i = 0; i < 3; i++) {
       const there = this.#there.at(point.copy(this.#here.subpoint).add(way))

@@ -29,14 +29,13 @@ const LIKELY = 0.007
 const LIKELY_OF_STORMS = 0.003
 
 /**
- * Part of the likely distance that is gone by: the rest is left for clouds that are nearer than likely. Greater:
+ * Part of the likely distance that steps take: the rest is left for clouds that are nearer than likely. Greater:
  * faster, and small clouds are missed here and there, as grain (*Cumulus*).
  */
 export const CAUTION = 0.7
 
 /**
- * Likely distance of a layer's clouds: strength is too wild for a distance that is sure, so a march that goes
- * by this has to look back. 0 in clouds [m].
+ * Likely distance of a layer's clouds. It is no bound, since the slope of strength has none, so a march that steps by it has to look back. 0 in clouds [m].
  *
  * @param strength - Strength of a `LayerSample`.
  */
@@ -45,7 +44,7 @@ export const likelyDistance = (layer: LayerNodes, strength: Float): Float => {
   return strength.negate().max(0).mul(perStrength).div(layer.perShapePeriod)
 }
 
-/** Greatest likely distance of storms that were looked at [m]. */
+/** Greatest likely distance of storms that were sampled [m]. */
 export const nearStorms = (layer: LayerNodes): Float =>
   float(stormBillows.most * LIKELY_OF_STORMS).div(layer.perShapePeriod)
 
@@ -91,8 +90,8 @@ export function likelyDistanceByBackground(
 }
 
 /**
- * Length of each of the next two steps over the stretch that is surely clear of storms. From 0.5 on they reach over its end,
- * and what is there is not looked at: horizontal slits in towers (*Storm*).
+ * Length of each of the next two steps over the stretch that is surely clear of storms. From 0.5 on they reach beyond its end, where
+ * nothing is sampled: horizontal slits in towers (*Storm*).
  */
 const SURE = 0.45
 

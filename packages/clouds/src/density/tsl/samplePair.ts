@@ -25,13 +25,13 @@ export interface SamplePair {
   readonly extinction: Vec2
   /** Distance from either in which there is likely no cloud; 0 in clouds [m]. */
   readonly likelyDistance: Float
-  /** True where storms are so near that they were looked at. */
+  /** True where storms are so near that they were sampled. */
   readonly isNear: Bool
   /** Greatest extinction that clouds have at their height [1/m]. */
   readonly greatest: Float
 }
 
-/** Distances up to which each layer is likely clear [m]: rarer layers are not looked at with every sample of others. */
+/** Distances up to which each layer is likely clear [m]: until there it is not sampled with the other layers. */
 export type ClearLayers = Variable<Vec4>
 
 /** A sample near another, on a straight line through it [m]: for its level of detail it is as far away. */

@@ -43,7 +43,7 @@ export interface WeatherSystems {
   readonly regions: Vec4
   /** Fronts and belts, of variance 1. */
   readonly systems: Float
-  /** Displacement to where cyclones have brought the air from, in the mapped space [m]. */
+  /** Displacement to where the air was before cyclones turned it, in the mapped space [m]. */
   readonly displacement: Vec3
 }
 

@@ -105,7 +105,7 @@ function lightsAbout(
   return { lights, here }
 }
 
-/** Most times as bright as without clouds that diffuse light is taken to be: at dusk there is next to none. */
+/** Greatest ratio of diffuse light among clouds to that without clouds: at dusk there is next to none without. */
 export const MOST_DIFFUSE = 10
 
 /**

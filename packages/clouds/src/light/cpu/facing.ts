@@ -1,6 +1,6 @@
 /**
- * Light by the cosine of the sun on the faces of thick isolated clouds, which takes the place of even white: what a face turned to
- * the light has over one that it grazes. It comes in as through⁴ / (through⁴ + thick⁴), with the scaled depth through the cloud.
+ * Shading of the faces of thick isolated clouds by the cosine of the sun, in place of even white: ratio between a face turned to the light
+ * and one that light grazes. Its weight is through⁴ / (through⁴ + thick⁴), with the scaled depth through the cloud.
  *
  * Fitted to Monte-Carlo solutions of the sunlit places that are seen in a simulated thunderstorm, under suns over 14°: their
  * correlation with the truth goes from 0.57 to about 0.66. In simulated cumulus it hardly acts.

@@ -1,5 +1,5 @@
 /**
- * Directions of light scattered more than once in isolated clouds, over those in a slab: what has left through the sides does not come
+ * Anisotropy of light scattered more than once in isolated clouds, relative to that in a slab: what has left through the sides does not come
  * back, so that light flows on along the light's ray, and out to the sides. Terms of its source over its mean, with D the scaled optical
  * diameter: along the ray χ′₁² `along` / (1 + (1 − g′) D / `alongDepth`), of its square χ′₂ `square` / (1 + …), and at a sphere's sides 3 χ′₁ `aside` / (1 + …).
  *

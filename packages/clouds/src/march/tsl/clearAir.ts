@@ -37,7 +37,7 @@ const LAST = 62
 /** Level of a ray that is clear to its end, beyond all others. */
 const CLEAR = LAST + 1
 
-/** Distance beyond which none is told from another, nor from none at all: layers that a ray enters there are marched whole [m]. */
+/** Largest distance that is kept, beyond which a cloud is not told from none: layers that a ray enters there are marched whole [m]. */
 export const FARTHEST_KNOWN = 2 ** (FIRST + LAST / PER_OCTAVE)
 
 /** Steps over 256 are kept in as many parts. */
@@ -132,7 +132,7 @@ export function clearAir(
       const isMemory = code.greaterThan(level.mul(2)).toConst()
       const isClear = level.equal(CLEAR).toConst()
       const isOwn = index.equal(int(4)).toConst()
-      // What the others remember spreads no farther.
+      // A place that a neighbour only remembers spreads no farther.
       If(isOwn.or(isMemory.not()), () => {
         nearest.assign(nearest.min(level))
         farthest.assign(farthest.max(isClear.select(0, level)))

@@ -89,7 +89,7 @@ export function endStratum(state: SeenState): void {
 const THIN = 0.01
 
 /**
- * Mean places where steps' light comes from, from their middle on [lengths of a step]: ∫ t e^{−τt} dt / ∫ e^{−τt} dt − ½ over t in
+ * Mean places that the light of steps comes from, relative to their middles [lengths of a step]: ∫ t e^{−τt} dt / ∫ e^{−τt} dt − ½ over t in
  * [0, 1]. Dense steps are seen at their beginning.
  *
  * @param depth - Their optical depths τ.

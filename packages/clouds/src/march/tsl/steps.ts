@@ -4,7 +4,7 @@ import type { QualityUniforms } from '../quality'
 import type { Bool, Float, Variable, Vec2 } from '../../tsl-types'
 import { CAUTION } from '../../density/tsl/likelyDistance'
 
-// The step policy of the march, and nothing else: a pair of samples goes half a step and one and a half
+// The step policy of the march, and nothing else: a pair of samples lies half a step and one and a half
 // steps ahead. Through clear air steps are as long as there is likely no cloud; a pair that lands in one goes
 // back, and then steps are parts of the mean free path. It may depend on the distance, the segment between
 // two layer boundaries, the quality, noise, what the pair before found, and the transmittance up to it; never
@@ -46,7 +46,7 @@ const HIDDEN_GROWTH = 2
  */
 const SPREAD = 0.1
 
-/** Least part of a pair's length where steps in clouds begin. From there up to 1 both its samples pass over one step. */
+/** Least part that the first pair in clouds is cut to, by chance: from there up to 1, its two samples sweep one step. */
 const LEAST_PART = 0.5
 
 /** State of the step policy. */
@@ -60,13 +60,13 @@ export interface StepState {
   readonly likely: Variable<Float>
   /** True where the pair before was near a storm. */
   readonly isNear: Variable<Bool>
-  /** Length of a step of the pair before [m]: its second half step was not looked at. */
+  /** Length of a step of the pair before [m]: its second half step was not sampled. */
   readonly before: Variable<Float>
   /** Part of the next pair's length: the first of a row is cut short, by chance, so that no layers show. */
   readonly part: Variable<Float>
   /** Noise in [0, 1), another for each pair: the part to start rows with, and by which steps in clear air are cut short. */
   readonly jitter: Variable<Float>
-  /** True where they are. */
+  /** True if steps in clear air are cut short by chance. */
   readonly isVaried: boolean
 }
 

@@ -23,7 +23,7 @@ export interface Fallen {
 }
 
 /**
- * Way by which what falls lags behind the cloud that it left, over the wind's growth with height: (x) of
+ * Distance by which precipitation lags behind the cloud that it left, over the wind's growth with height: (x) of
  * ½ dU/dz [m s], (y) of the cloud's lean [m]. In wind that grows evenly with height its path is a parabola (Marshall 1953), flat while it is snow.
  * Twin: test/twins/precipitation.ts
  *
@@ -136,8 +136,9 @@ interface FallPlace {
 }
 
 /**
- * Rate [mm/h] and rank of the column from which something falls that lags by `lag`, of {@link fallLag}: it left its cloud downwind, where the wind that grows with
- * height has carried that in the meantime. The column's rank is looked up there; streaks are billows of the cloud at the same point.
+ * Rate [mm/h] and rank of the column from which something falls that lags by `lag`, of {@link fallLag}: it left its cloud downwind, where
+ * the wind, which grows with height, has carried the cloud in the meantime. The column's rank is looked up there; streaks are billows of
+ * the cloud at the same point.
  */
 function fallAlong(
   lag: Vec2,

@@ -38,8 +38,8 @@ const LEAP = 4
 const NEAR_RANK = -0.2
 
 /**
- * Light is found where a part of the picture's light comes from a run of steps, after some steps, and at their end: once for all of them. Greater: shadows in
- * shafts have grain (*Rain and snow*).
+ * Run of steps that share one look-up of light: it ends when so large a part of the picture's light comes from it, after so many steps, or
+ * with the shaft. Greater: shadows in shafts have grain (*Rain and snow*).
  */
 const RUN_SEEN = 0.2
 const RUN_STEPS = 6
@@ -52,18 +52,18 @@ export const LEAST_SEEN = 1e-4
 
 /** Precipitation on a ray. Depths count without what is only diffracted. */
 export interface SeenPrecipitation {
-  /** Part of the picture's light that it scatters: what does not pass. And its means by that part: */
+  /** Part of the picture's light that it scatters: what does not pass. All else is a mean, weighted by it. */
   readonly weight: Float
-  /** distance, and its deviation [m], */
+  /** Distance, and its standard deviation [m]. */
   readonly distance: Float
   readonly spread: Float
-  /** rank of the columns above, in [0, 1], */
+  /** Rank of the columns above, in [0, 1]. */
   readonly rank: Float
-  /** scaled depth of clouds towards the light, */
+  /** Scaled optical depth of clouds towards the light. */
   readonly depthToLight: Float
-  /** depth of precipitation towards the light, */
+  /** Optical depth of precipitation towards the light. */
   readonly ownDepth: Float
-  /** and direct light that arrives unscattered, over that above the clouds, of drops and of flakes. */
+  /** Direct light that arrives unscattered, over that above the clouds, on drops and on flakes [–]. */
   readonly lit: Vec2
 }
 
@@ -74,7 +74,7 @@ export interface FallSpace {
   readonly layers: LayerRange
   /** Altitude above which nothing falls [m]. */
   readonly ceiling: Float
-  /** Way of level light through what falls [m]. */
+  /** Path of horizontal light through precipitation [m]. */
   readonly width: Float
   /** Length of steps that streaks ask for [m]. */
   readonly shortest: Float
@@ -123,7 +123,7 @@ export function marchPrecipitation(
     const mapped = inMap.mul(toLight.isMapped).toConst() as Float
     const clouds = depthToLight.mul(mapped).mul(light.depthScale).toConst() as Float
     const slant = toLight.cosine.max(0.05).reciprocal()
-    // Out of the shaft's top, or of its side.
+    // The ray to the light leaves the shaft at its top, or at its side.
     const aside = width.div(toLight.cosine.mul(toLight.cosine).oneMinus().max(1e-4).sqrt())
     const own = ceiling.sub(sample.altitude).mul(slant).min(aside).mul(extinction)
     // The map has what falls, too.

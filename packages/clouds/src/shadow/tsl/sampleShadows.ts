@@ -92,7 +92,7 @@ export function sampleShadows(
 const shareAbove = ({ x: front, y: half, z: depth }: Vec4, height: Float): Float =>
   front.sub(depth.mul(height)).div(half.mul(2).max(1e-6)).clamp().toConst()
 
-/** Optical depths by a place in the map, the height over the cascade's plane there, and whether it is known. */
+/** Optical depths at a place: texture coordinates (xy), height over the cascade's plane (z), and weight of the map there (w). */
 function depthsAt(map: CloudShadows['map'], inAtlas: Vec4): LightDepths {
   const inMap = inAtlas.w.toConst() as Float
   const texel = map.sample(inAtlas.xy).level(0).mul(inMap).toConst() as Vec4

@@ -42,7 +42,7 @@ const SHARPNESS = 0.5
 /** Footprint of samples over a step through a layer [–]. Smaller: rings on tall clouds (*Storm*). */
 const BLUR = 0.35
 
-/** Footprint of samples over the way through what falls [–]. Greater: soft shadows of shafts (*Rain and snow*). */
+/** Footprint of samples over the path through precipitation [–]. Greater: soft shadows of shafts (*Rain and snow*). */
 const FALL_BLUR = 0.03
 
 /** A ray of light through a texel. */

@@ -1,7 +1,7 @@
 import { fractalSum, type Octaves, type Sum } from '../../noise/cpu/fractalSum'
 import { latticeNoise, type Noise } from '../../noise/cpu/latticeNoise'
 
-/** Noise that moves places: crests and coasts that lie along its cells come to lie anywhere. */
+/** Domain warp: noise displaces places, so that crests and coasts do not follow the lattice of the noise. */
 export interface Warp {
   /** 1 / wavelength, a power of two [1/m]. */
   readonly inverse: number
@@ -11,10 +11,10 @@ export interface Warp {
   readonly seed: number
 }
 
-/** Displacement of continents and belts. */
+/** Domain warp of continents and belts. */
 export const LAND_WARP: Warp = { inverse: 2 ** -20, reach: 3e5, seed: 301 }
 
-/** Displacement of ridges. */
+/** Domain warp of ridges. */
 export const RIDGE_WARP: Warp = { inverse: 2 ** -15, reach: 1.1e4, seed: 331 }
 
 /** Continents: from 8,400 km to 524 km. */

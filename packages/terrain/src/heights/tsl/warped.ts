@@ -4,17 +4,17 @@ import { latticeNoise } from '../../noise/tsl/latticeNoise'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import type { Warp } from '../cpu/mountains'
 
-/** A place that noise has moved. */
+/** A place after a domain warp. */
 export interface Warped {
   /** As of `latticeNoise`. */
   readonly offset: Vec3
-  /** Displacement along each axis, per reach (w), and its gradient (xyz) [1/m]. */
+  /** Displacement along each axis in units of `reach` (w), and its gradient (xyz) [1/m]. */
   readonly moves: readonly Vec4[]
-  /** Gradient at the place itself from that at the moved one, with the value in w left as it is. */
+  /** Gradient at the place itself from that at the warped one, with the value in w left as it is. */
   readonly back: (sum: Vec4) => Vec4
 }
 
-/** Moves a place by noise, where that is not too short to be seen. */
+/** Displaces a place by noise (domain warping), unless the noise is too short to be seen. */
 export function warped(
   { inverse, reach, seed: first }: Warp,
   reference: Vec3,

@@ -1,10 +1,10 @@
 /** Azimuths in which horizons are looked for. */
 export const AZIMUTHS = 4
 
-/** Distances at which: so many, from the nearest on, each so many times as far [m]. */
+/** Distances at which they are looked for: `count` of them from `nearest` [m] on, each `factor` times the one before. */
 export const DISTANCES = { count: 2, nearest: 150, factor: 8 }
 
-/** Shortest detail that counts, per distance. */
+/** Shortest wavelength that counts, as a fraction of the distance [–]. */
 export const FINENESS = 0.3
 
 /**

@@ -1,10 +1,10 @@
 import { vec2 } from 'three/tsl'
 import type { Float, Vec2 } from '../../tsl-types'
 
-/** Steps per unit of the first of two numbers. */
+/** Steps per unit of the first of the two packed numbers. */
 const STEPS = 1024
 
-/** Most of the second: below 1, for a float32 that has the first too. */
+/** Largest value of the second: below 1 in a float32 that has the first, too. */
 const MOST = 1 - 2 ** -9
 
 /**

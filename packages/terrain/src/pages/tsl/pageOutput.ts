@@ -10,8 +10,8 @@ import type { ShaderFigure } from '../../tiles/tsl/figure'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 
 /**
- * Shortest wavelength of pages for pixels, over that which their texels can show. 1: octaves count from four texels on alone, and land from 10 km and
- * 400 km is as if out of focus (*Terrain*).
+ * Shortest wavelength in pages for pixels, over the shortest that their texels resolve. 1: only octaves of four texels and more count, and
+ * land from 10 km and 400 km looks out of focus (*Terrain*).
  */
 const SHARPNESS = 0.5
 

@@ -7,7 +7,7 @@ import { AZIMUTHS, DISTANCES, FINENESS } from '../cpu/skyShare'
 type Variable<T> = T & { addAssign(value: T): void; assign(value: T): void }
 
 /**
- * Height of a place, and the share of the sky that the ground about it leaves free, of what its own slope leaves.
+ * Height of a place, and the share of the sky that the ground about it leaves free, relative to what its own slope leaves.
  *
  * Horizons at an angle e above the slope hide sin² e of a sky that is even, weighted by the cosine: in each azimuth the greatest of
  * rises over the slope, found at some distances at the detail that counts there.

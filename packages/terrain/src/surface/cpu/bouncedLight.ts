@@ -1,5 +1,5 @@
 /**
- * Float64 twin of the light that the sides of a hollow throw at each other: bounce by bounce.
+ * Float64 twin of the interreflection in a hollow, summed bounce by bounce.
  *
  * @param albedo - Reflectance of the ground, in [0, 1).
  * @param skyShare - Share of the sky that is seen, in (0, 1].

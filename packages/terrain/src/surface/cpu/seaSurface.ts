@@ -15,13 +15,13 @@ export function waterFresnel(cosViewer: number, variance: number): number {
 }
 
 /**
- * Float64 twin of the waves: slopes along the ground, and the variance of those that no wave shows.
+ * Float64 twin of the waves: slopes along the ground, and the variance of those that they do not resolve.
  *
  * @param offset - Place relative to a multiple of 256 m [m].
  * @param up - Unit vector.
  * @param footprint - Longer side of the pixel on the ground [m].
  * @param seaVariance - Variance of all slopes.
- * @param seconds - Time that waves move by [s].
+ * @param seconds - Time of the waves [s].
  */
 export function seaWaves(
   offset: Vector,

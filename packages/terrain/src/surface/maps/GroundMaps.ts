@@ -26,7 +26,7 @@ const NAMES = ['albedo', 'normal', 'roughness', 'ao', 'height'] as const
 const DEFAULT_SIDE = 2
 const DEFAULT_RELIEF = 0.05
 
-/** Number of times that maps have changed; null while one of them has no picture yet. */
+/** Number of times that maps have changed; null while one of them has not loaded yet. */
 function versionOf(maps: MaterialMaps): number | null {
   let sum = 0
   for (const name of NAMES) {
@@ -64,7 +64,7 @@ function arrayTarget(size: number, layers: number): RenderTarget {
     wrapS: RepeatWrapping,
     wrapT: RepeatWrapping,
     anisotropy: 8,
-    // Finer where it is dark. Devices turn numbers to it and back: all that is read is linear.
+    // sRGB has finer steps where it is dark. The GPU encodes and decodes it: what is read is linear.
     colorSpace: SRGBColorSpace
   })
   target.texture.name = 'Welkin.Terrain.maps'
@@ -73,7 +73,7 @@ function arrayTarget(size: number, layers: number): RenderTarget {
 }
 
 /**
- * A user's own maps of the ground's materials, in place of made-up ones; materials without stay made up.
+ * Texture maps of the ground's materials, in place of procedural ones; materials without maps stay procedural.
  *
  * ```ts
  * const load = (name: string) => new TextureLoader().load(name)
@@ -84,7 +84,7 @@ function arrayTarget(size: number, layers: number): RenderTarget {
  * ```
  *
  * All maps lie in one texture array, drawn when they have arrived and again when they change: however many materials there are, the ground samples one texture
- * for them. Until all maps of a material are there it is made up.
+ * for them. A material is procedural until all of its maps have loaded.
  */
 export class GroundMaps {
   /** Texels along the side of a material. */

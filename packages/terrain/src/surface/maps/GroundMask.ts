@@ -26,7 +26,7 @@ const meridian = new Vector3()
 const north = new Vector3()
 
 /**
- * A user's picture of what the ground consists of: each channel is the share of a material, and the rest is as height, slope and latitude have it.
+ * Mask of the ground's materials: each channel of a texture is the share of one, and height, slope and latitude decide the rest.
  *
  * ```ts
  * const paths = new GroundMask(texture, { materials: ['sand'], west: 8, east: 8.1, south: 46, north: 46.1 })
@@ -84,7 +84,7 @@ export class GroundMask {
   }
 
   /**
-   * Aims the mask at the point that places count from; a terrain calls it by itself.
+   * Sets the uniforms for the point that places count from; a terrain calls it by itself.
    *
    * @param referencePoint - [m]
    * @throws If the area does not fit a globe.

@@ -3,7 +3,7 @@ import type { Texture } from 'three'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { GRAIN_SLOPE } from '../grainTexture'
 
-/** Pictures of a material of the ground, all of which repeat. */
+/** Texture maps of a material of the ground, all of which tile. */
 export interface MaterialMaps {
   /** Reflectance; its colour space is the texture's own, as in three. */
   readonly albedo: Texture
@@ -11,7 +11,7 @@ export interface MaterialMaps {
   readonly normal?: Texture | undefined
   /** Roughness in green, as in three; 0.9 without it. */
   readonly roughness?: Texture | undefined
-  /** Share of the sky that reaches the ground, in red, as in three; 1 without it. */
+  /** Ambient occlusion in red, as in three; 1 without it. */
   readonly ao?: Texture | undefined
   /** Height in red: where materials meet the higher one shows, and near the feet the ground has depth; level without it. */
   readonly height?: Texture | undefined

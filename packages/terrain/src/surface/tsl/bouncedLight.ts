@@ -1,10 +1,10 @@
 import type { Float, Vec3 } from '../../tsl-types'
 
 /**
- * Light in a hollow with what its sides throw at each other, over that without: more, and tinted, where the ground is bright.
+ * Gain of light in a hollow by interreflection of its sides: greater, and tinted, where the ground is bright.
  *
- * Sides of a bowl see all of it alike. With x the share of the sky and ρ the reflectance, light is x + (1 − x) ρ · light of
- * that of a sky that is even on open ground, hence x / (1 − ρ (1 − x)). The sun lights the bowl by x of what it does to open ground, too,
+ * All sides of a bowl see the same. With x the share of the sky, ρ the reflectance and 1 the light of an even sky on open ground, light L =
+ * x + (1 − x) ρ L, hence L = x / (1 − ρ (1 − x)). The sun lights the bowl by x of what it does to open ground, too,
  * unevenly; of that, bounces add the same factor less 1, evenly.
  *
  * @param albedo - Reflectance ρ of the ground, in [0, 1).

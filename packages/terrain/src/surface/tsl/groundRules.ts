@@ -63,7 +63,7 @@ export interface GroundPlace extends GrainPlace {
   readonly hollow: Float
 }
 
-/** Layers on each other, each as a share of what those before it leave: snow, rock, no sand of the shore, scree, desert, woods; the rest is grass. */
+/** Layers from the top down, each as a share of what those before it leave: snow, rock, no sand of the shore, scree, desert, woods; the rest is grass. */
 export interface GroundLayers {
   readonly snow: Float
   readonly bare: Float
@@ -73,10 +73,10 @@ export interface GroundLayers {
   readonly woods: Float
 }
 
-/** Reflectances of materials that are made up, linear sRGB; desert is sand inland. */
+/** Reflectances of procedural materials, linear sRGB; desert is sand inland. */
 export type GroundColors = OfKinds<Vec3> & { readonly desert: Vec3 }
 
-/** Rules by which the ground consists of what it does. */
+/** Ground by its rules: layers, and what they were found from. */
 export interface GroundRules {
   readonly layers: GroundLayers
   /** Height of stones and crowns about 0. */

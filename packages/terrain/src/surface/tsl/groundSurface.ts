@@ -53,7 +53,7 @@ export interface GroundSurface {
   readonly occlusion: Float
 }
 
-/** Maps and mask of the ground's surface that users have given. */
+/** Texture maps and mask of the ground's surface. */
 export interface OwnSurface {
   readonly maps: GroundMaps | null
   /** Layers where a mask has painted them, with edges that a height about 0 frays. */
@@ -61,7 +61,7 @@ export interface OwnSurface {
 }
 
 /**
- * Rock, scree, grass, forest, sand and snow, by height, slope, curvature, latitude and noise, or by a user's mask; made up, or of a user's maps.
+ * Rock, scree, grass, forest, sand and snow, by height, slope, curvature, latitude and noise, or by a mask; procedural, or of texture maps.
  *
  * @param seaLevel - [m]
  */

@@ -10,7 +10,7 @@ const STEPS = 8
 
 /** Line of sight over ground that has depth. */
 export interface LineOfSight {
-  /** Way along the frame on which it rises by 1 m, towards the viewer [m]. */
+  /** Displacement along the frame, towards the viewer, per metre of rise [m]. */
   readonly slope: Vec2
   /** Share of depth that is left: none from some 5 m on. */
   readonly share: Float

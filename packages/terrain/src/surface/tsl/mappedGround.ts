@@ -31,7 +31,7 @@ const CELLS = 36
 /** Weight of a material below which it is not read. */
 const LEAST = 0.004
 
-/** Part of the weights' range in which one material gives way to the other, and share of heights in who shows. */
+/** Part of the weights' range over which one material gives way to the other, and the part that heights have in which one shows. */
 const BLEND = 0.18
 const BY_HEIGHT = 0.5
 
@@ -77,7 +77,7 @@ function heaviest(layers: readonly Vec4[]): [Vec4, Vec4] {
 }
 
 /**
- * The ground by a user's maps, and by colours that are made up where it has none.
+ * The ground by texture maps, and by procedural colours where a material has none.
  *
  * @param layers - Layers on each other.
  */

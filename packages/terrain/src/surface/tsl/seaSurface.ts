@@ -13,10 +13,10 @@ const DEEP = [0.007, 0.022, 0.042]
  */
 const EXTINCTION = [0.294, 0.087, 0.04]
 
-/** Way of light through water of depth 1, down and up, both bent towards the vertical. */
+/** Path of light through water, down and up, per depth [–]: both are refracted towards the vertical. */
 const PATH = 2.4
 
-/** Depth at which water has its whole surface [m], and part of the differences of height within a pixel. */
+/** Depth at which water covers a pixel fully: at least so much [m], and so much of the differences of height within the pixel [–]. */
 const SHALLOW = 0.12
 const SHALLOW_SPREAD = 0.5
 
@@ -32,7 +32,7 @@ export interface SeaSurface {
   readonly cover: Float
   /** Slopes of waves along the ground, ECEF axes [–]. */
   readonly slope: Vec3
-  /** Variance of the slopes that no wave shows. */
+  /** Variance of the slopes that the waves do not resolve. */
   readonly variance: Float
 }
 

@@ -23,7 +23,7 @@ export interface Viewer {
   readonly shadowDistance: number
   /** Unit vector to the viewer where the ellipsoid is the unit sphere. */
   readonly direction: Vector3
-  /** Radius of what hides things, where the ellipsoid is the unit sphere; at most 1. */
+  /** Radius of the sphere that hides what is behind the horizon, where the ellipsoid is the unit sphere; at most 1. */
   readonly occluder: number
   /** Angle at the planet's centre from the viewer to the horizon; infinite in a flat world [rad]. */
   readonly horizon: number

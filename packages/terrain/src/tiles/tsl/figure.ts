@@ -7,7 +7,7 @@ export interface ShaderFigure {
   readonly isFlat: boolean
   /** Place above a point of the cube and a difference from it, relative to the place above the point [m]. */
   readonly difference: (cube: Vec3, delta: Vec3, radii: Vec3) => Vec3
-  /** Up above both, relative to that above the point. */
+  /** Up at the displaced point minus up at the point. */
   readonly turnOfUp: (cube: Vec3, delta: Vec3, stretch: Vec3) => Vec3
   /** Up above a point of the cube. */
   readonly upOfCube: (cube: Vec3, stretch: Vec3) => Vec3
