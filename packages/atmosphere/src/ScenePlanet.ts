@@ -14,13 +14,13 @@ import {
 import type { Ellipsoid, GeodeticLike } from '@welkin/geo'
 import { checkRange } from './check'
 
-/** Lie of the scene's world space on the planet. */
+/** Frame of the scene's world space: that of a place on the planet, or ECEF. */
 export type AtmosphereFrame = 'local' | 'ecef'
 
 const _position = new Vector3()
 const _rotation = new Matrix4()
 
-/** A planet about a scene: how world space lies on it, and where its sun stands. */
+/** Planet of a scene: position and rotation of world space on it, and direction of its sun. */
 export class ScenePlanet extends EventDispatcher<{ dispose: object }> {
   /** The planet's figure. */
   readonly ellipsoid: Ellipsoid

@@ -291,7 +291,7 @@ export class Ellipsoid {
    * Gaussian radius of curvature there (√(M·N) of a spheroid) unless one is given.
    *
    * @param positionECEF - [m], finite.
-   * @param radius - [m].
+   * @param radius - Radius of the sphere, > 0 [m].
    * @returns Centre in ECEF [m] and radius [m].
    * @throws Error if a component is not finite or the radius is not positive.
    */

@@ -206,7 +206,7 @@ export class Terrain extends SeaMesh {
    * Height of the ground, or of the sea over it, above the ellipsoid: that of the surface as drawn about a
    * viewer who stands there [m].
    *
-   * @param longitude - [°]
+   * @param longitude - East of the prime meridian [°].
    * @param latitude - Geodetic, in [−90, 90] [°].
    * @throws If one is not finite or out of its range, or the world is flat: ask `heightBelow` there.
    */
@@ -217,7 +217,7 @@ export class Terrain extends SeaMesh {
   /**
    * Unit normal of the surface in ECEF: that of a pixel near the viewer, without stones and tufts.
    *
-   * @param longitude - [°]
+   * @param longitude - East of the prime meridian [°].
    * @param latitude - Geodetic, in [−90, 90] [°].
    * @throws If one is not finite or out of its range.
    */

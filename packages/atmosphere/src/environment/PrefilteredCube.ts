@@ -18,7 +18,7 @@ const TEXELS = 2 * 128 * 128
 
 const _faces = new Box3(new Vector3())
 
-/** The cheapest that has the GPU make a map. */
+/** Cheapest part: drawing it allocates a map on the GPU. */
 const ALLOCATION: Part = { level: 0, from: 0, to: 1 }
 
 /** The parts of a map, in the order that the filter draws them in. */

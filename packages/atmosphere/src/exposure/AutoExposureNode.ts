@@ -82,8 +82,9 @@ function checkRising(
  * {@link purkinjeShift}. A scene whose materials draw the air themselves has `pass(scene, camera)` as colour. What is no texture yet is drawn to one of the picture's size.
  *
  * From a histogram of log2 luminance the mean between two {@link percentiles} becomes 0.17, less where a large part is much
- * brighter ({@link highlightPriority}), and the upper percentile no more than 8: for tone mappings with soft highlights, such as `AgXToneMapping` and `ACESFilmicToneMapping`. What is over
- * 8 stops darker than the upper percentile counts less and over 12 not at all, so the black of space does not. The picture
+ * brighter ({@link highlightPriority}), and the upper percentile no more than 8: for tone mappings with soft highlights, such as
+ * `AgXToneMapping` and `ACESFilmicToneMapping`. What is over 8 stops darker than the upper percentile counts less and over 12 not at all,
+ * such as the black of space. The picture
  * is read back a frame or more later, without a wait, one at a time.
  *
  * `luminanceScale` is that of all cameras, so an atmosphere has one of these. Lamps and emissive materials of your own
@@ -183,8 +184,8 @@ export class AutoExposureNode extends Node<'vec4'> {
   }
 
   /**
-   * Part, in [0, 1], of the stops by which the brightest tenth of the picture would be over 0.8, that the picture is darker: at 0 the
-   * sky over a valley after sunset goes white, at 1 the land stays dark [–].
+   * Part, in [0, 1], of the stops by which the brightest tenth of the picture is over 0.8: the picture is darkened by it. At 0 the sky over
+   * a valley after sunset goes white, at 1 the land stays dark [–].
    */
   get highlightPriority(): number {
     return this.#highlightPriority

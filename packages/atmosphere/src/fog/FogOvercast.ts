@@ -14,8 +14,8 @@ export interface FogOvercast {
   /** Sets uniforms for the camera that renders. */
   update(view: AtmosphereView): void
   /**
-   * Light in the fog over that under a clear sky: of what fog scatters once the part that arrives unscattered, in [0, 1]; and
-   * of all other light, at the four wavelengths [–]. Read in branches: no derivatives.
+   * Light in the fog over that under a clear sky: of the light that fog scatters once, which arrives unscattered, in [0, 1]; and of all
+   * other light, at the four wavelengths [–]. Read in branches: no derivatives.
    *
    * @param cosLight - μ_s of the source.
    */

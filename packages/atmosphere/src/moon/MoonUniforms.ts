@@ -24,7 +24,7 @@ export interface MoonState {
   geometry: MoonGeometry
   /** Camera to moon, world, unit length. */
   directionWorld: Vector3
-  /** [rad] */
+  /** Angular radius of the disc [rad]. */
   angularRadius: number
   /** Radius of the moon [m]. */
   radius: number
@@ -44,7 +44,7 @@ export class MoonUniforms {
   readonly sunDirectionMapped = vector3()
   /** Mapped space to moon-fixed axes. */
   readonly mappedToMoonFixed = matrix3()
-  /** [rad] */
+  /** Angular radius of the disc [rad]. */
   readonly angularRadius = number(0)
   /** Radiance of sunlit ground, for a Lommel–Seeliger factor of 1 [1/sr]. */
   readonly sunlit = vector4()

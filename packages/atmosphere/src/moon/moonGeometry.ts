@@ -7,9 +7,9 @@ import type { SunMoonEphemeris } from './sunMoonEphemeris'
 export interface MoonSettings {
   /** Direction to the moon, in world space, unit length. */
   readonly direction: Vector3 | null
-  /** 0 new, 0.5 full, in [0, 1]. */
+  /** Phase: 0 new, 0.5 full, in [0, 1]. */
   readonly phase: number | null
-  /** [m] */
+  /** Observer to the moon's centre [m]. */
   readonly distance: number | null
 }
 

@@ -8,7 +8,7 @@ const map = (values: Spectrum, f: (value: number, i: number) => number): Spectru
 /**
  * Wavelengths and sunlight at a distance from the sun.
  *
- * @param distance - [astronomical units].
+ * @param distance - Planet to sun [astronomical units].
  */
 function sunAt(distance: number) {
   const { wavelengths, solarIrradiance, sunAngularRadius, limbDarkening } =

@@ -9,7 +9,7 @@ import type { ParticleKind } from './ParticleKind'
 export const CELLS = 8
 /** Particles of a cell that fall together. */
 export const CHUNK = 8
-/** Parts of equal number that a class's sizes have: those of a chunk are of one, and fall equally fast. */
+/** Strata of equal number into which a class's sizes are cut: particles of a chunk are of one, and fall equally fast. */
 export const STRATA = 8
 /** Chunks of a layer, which has one in each cell, and its particles. */
 const LAYER_CHUNKS = CELLS ** 3
@@ -31,7 +31,7 @@ const fract = (x: number): number => x - Math.floor(x)
  * of view costs no vertices.
  */
 export class FallingChunks {
-  /** Per chunk: its number in its class; class and stratum, 8 c + s; way that it has fallen over its box's side; speed [m/s]. */
+  /** Per chunk: its number in its class; class and stratum, 8 c + s; distance fallen over its box's side; speed [m/s]. */
   readonly attribute: InstancedBufferAttribute
   #classes: readonly DrawnClass[] = []
   /** Speeds of columns, by class and layer [m/s]. */
@@ -47,7 +47,7 @@ export class FallingChunks {
     this.#speeds = kind.reach.map(() => [])
   }
 
-  /** Takes a rate [mm/h]. @returns Classes as they are drawn. */
+  /** Sets the rate [mm/h]. @returns Classes as they are drawn. */
   setRate(rate: number): readonly DrawnClass[] {
     this.#classes = drawnParticles(this.kind, rate, this.most)
     return this.#classes
@@ -67,7 +67,7 @@ export class FallingChunks {
   }
 
   /**
-   * Takes the frame of a camera.
+   * Finds the chunks that a camera sees.
    *
    * @param margin - Distance from its chunk up to which a particle is drawn [m].
    * @returns Number of chunks to draw.

@@ -56,9 +56,9 @@ export class FallingLattice {
   readonly #tracks = new WeakMap<Camera, CameraTrack>()
 
   /**
-   * Moves air and camera on.
+   * Advances air and camera.
    *
-   * @param time - [s].
+   * @param time - Time of the fall [s].
    * @param gusts - Standard deviation of the wind's speed over its mean [–].
    */
   update(

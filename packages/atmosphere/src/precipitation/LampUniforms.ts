@@ -14,7 +14,7 @@ const _position = new Vector3()
 const _target = new Vector3()
 const _color = new Color()
 
-/** A point light or a spot light as three has them, for shaders; its shadow map is not asked. */
+/** A point light or a spot light as three has them, for shaders; its shadow map is not sampled. */
 export class LampUniforms {
   /** Position in view space [world units], and exponent of the decay. */
   readonly #place = vector4()
@@ -27,7 +27,7 @@ export class LampUniforms {
 
   constructor(readonly lamp: Lamp) {}
 
-  /** Takes the lamp's values as a camera sees them. */
+  /** Sets the lamp's values as a camera sees them. */
   update(camera: Camera): void {
     const { lamp } = this
     _color.copy(lamp.color).multiplyScalar(isShown(lamp) ? lamp.intensity : 0)

@@ -9,9 +9,9 @@ import { matrix3, vector3, vector4 } from '../uniforms'
 import { isLamp } from './LampUniforms'
 import type { FallingLattice } from './FallingLattice'
 
-/** Classes of size, for each of which directional light is measured at a distance. */
+/** Classes of size; for each, directional light is measured at one distance. */
 const CLASSES = 4
-/** That distance over the one up to which the class is drawn [–]. */
+/** Distance of that measurement over the one up to which the class is drawn [–]. */
 const MIDDLE = 0.4
 
 const _target = new Vector3()
@@ -96,13 +96,13 @@ export class MeasuredLight {
       .map(light => new MeasuredRays(light, here))
   }
 
-  /** Measures. */
+  /** Draws the measurements. */
   render(renderer: Renderer, camera: Camera): void {
     this.#surfaces.render(renderer, camera, this.#around, this.#target)
     for (const rays of this.rays) rays.render(renderer, camera)
   }
 
-  /** Takes the frame of a camera. */
+  /** Sets uniforms for a camera. */
   update(camera: Camera, { toView, unit }: FallingLattice): void {
     this.#axes.value.setFromMatrix4(toView).multiplyScalar(1 / unit)
     this.#distances.value.fromArray(this.reach).multiplyScalar(MIDDLE * unit)

@@ -10,18 +10,18 @@ export interface ParticleKind {
   readonly sizes: (rate: number) => SizeDistribution
   /** Rate whose sizes particles are drawn from, so that each keeps its own while the rate changes [mm/h]. */
   readonly drawnRate: number
-  /** Diameters that part the classes of size [mm]: smaller than the first ones are too faint to be seen. */
+  /** Edges of the classes of size, as diameters [mm]: particles below the first are too faint to be seen. */
   readonly edges: readonly [number, number, number, number, number]
   /** Distance up to which a class is drawn [m]: farther off its particles are too faint. */
   readonly reach: readonly [number, number, number, number]
-  /** Real particles for which each one that is drawn stands, at least: those of small classes are too faint to be told apart. */
+  /** Least number of real particles for which each drawn one stands: those of small classes are too faint to be told apart. */
   readonly weights: readonly [number, number, number, number]
   /**
    * Share of its reach up to which a class has all its particles: farther off fewer and more opaque ones stand for them. Smaller: opacities would
    * be above 1, and far snow too thin (*Rain and snow in a street*).
    */
   readonly fullReach: readonly [number, number, number, number]
-  /** Most particles of a class that are drawn, if no one says. */
+  /** Most particles of a class that are drawn, by default. */
   readonly most: number
   /** Width that is seen [m]. @param diameter - [mm]. */
   readonly width: (diameter: Float) => Float

@@ -69,13 +69,13 @@ class PrecipitationNode extends Node<'vec4'> {
  *
  * Particles stand still against the planet but for their fall and the wind: a moving camera sees parallax. Each of four classes of size is drawn
  * as far as it can be seen, up to 16 m in rain and 18 m in snow; what falls farther off is haze, such as `heightFog` with
- * {@link Raindrops} or a cloud layer's precipitation. A particle's streak is its way against the camera while the shutter
- * is open, as opaque as the particle is on the mean, so that rain dims by π/4 ΣD² per length.
+ * {@link Raindrops} or a cloud layer's precipitation. A particle's streak is its path relative to the camera while the shutter is open, as
+ * opaque as the particle is on average, so that rain dims by π/4 ΣD² per length.
  *
  * The mesh is transparent, premultiplied, and writes no depth; it follows the camera by itself, wherever it stands in the scene, for perspective and
  * orthographic cameras and every kind of depth buffer. With `aerialPerspective` or clouds lay it over the picture by {@link precipitationOverlay}:
- * in the scene it would get the air of what is behind it. Lamps' shadow maps are not asked, and directional
- * light is that of four places in front of the camera.
+ * in the scene it would get the air of what is behind it. Lamps' shadow maps are not sampled, and directional light is that of four places
+ * in front of the camera.
  */
 export class Precipitation extends Mesh<InstancedBufferGeometry, NodeMaterial> {
   /** Type tag: true. */

@@ -11,8 +11,8 @@ import { drawnSize } from '../view/renderers'
 import type { Precipitation } from './Precipitation'
 
 /**
- * Share of what particles hide that passes on through them, as the forward lobe of flakes has it, at least: lights that are measured at the
- * camera know nothing of walls and ground that lamps light. 0: near flakes are black before lit snow (*Rain and snow in a street*).
+ * Least share of the hidden background that shines through particles, as by the forward lobe of flakes: light measured at the camera has no
+ * part of walls and ground that lamps light. 0: near flakes are black before lit snow (*Rain and snow in a street*).
  */
 const FORWARD = 0.65
 

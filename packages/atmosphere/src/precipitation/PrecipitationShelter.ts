@@ -138,7 +138,7 @@ export class PrecipitationShelter {
     show()
   }
 
-  /** Takes the frame of a camera. */
+  /** Sets uniforms for a camera. */
   update({ toView, camera }: FallingLattice): void {
     const scale = 0.5 / this.extent
     _offset.copy(camera).sub(this.#middle)

@@ -42,7 +42,7 @@ export class PrecipitationUniforms {
   readonly unit = number(1)
   /** Displacements in the lattice's frame [m] to view space [world units]. */
   readonly toView = matrix3()
-  /** Velocity of air against the camera [m/s], without fall. */
+  /** Velocity of the air relative to the camera [m/s], without fall. */
   readonly velocity = vector3()
   readonly #sizes = [0, 1, 2, 3].map(() => vector4())
   readonly #boxes = [0, 1, 2, 3].map(() => vector4())
@@ -52,9 +52,9 @@ export class PrecipitationUniforms {
   constructor(private readonly kind: ParticleKind) {}
 
   /**
-   * Takes a rate.
+   * Sets the rate.
    *
-   * @param rate - [mm/h].
+   * @param rate - Rate as water [mm/h].
    * @param classes - Classes as they are drawn at it.
    */
   setRate(rate: number, classes: readonly DrawnClass[]): void {
@@ -70,7 +70,7 @@ export class PrecipitationUniforms {
     })
   }
 
-  /** Takes the frame of a camera. */
+  /** Sets uniforms for a camera. */
   setView(lattice: FallingLattice): void {
     const { toView, unit, phase, wind, cameraVelocity } = lattice
     this.toView.value.setFromMatrix4(toView)

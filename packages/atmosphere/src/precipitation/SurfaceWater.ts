@@ -159,7 +159,7 @@ export class SurfaceWater {
   }
 
   /**
-   * Goes on by some time; days at once are fine.
+   * Advances by some time; days at once are fine.
    *
    * @param seconds - Finite, ≥ 0 [s].
    * @param weather - During that time.

@@ -6,7 +6,7 @@ import { fail } from '@welkin/geo'
  * source on a plane across its rays, a value for each wavelength.
  */
 export interface CloudedPoint {
-  /** World. */
+  /** Position in world space. */
   readonly position: Vector3
   /** Altitude above the ground [m]. */
   readonly altitude: number

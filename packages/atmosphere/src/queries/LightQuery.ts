@@ -15,7 +15,7 @@ export class LightQuery {
   readonly parameters: AtmosphereParameters
   /** Planet's centre to the position, at least to the ground [m]. */
   readonly radius: number
-  /** World. */
+  /** Position in world space. */
   readonly position: Vector3
   /** μ_s. */
   readonly cosLight: number

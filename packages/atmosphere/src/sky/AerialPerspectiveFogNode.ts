@@ -9,7 +9,7 @@ import type { airAtVertices } from './tsl/airAtVertices'
 
 /** Material whose triangles are small beside their distance everywhere, such as a terrain's. */
 export interface FineMaterial {
-  /** `airAtVertices`, to find the clear air's effect at vertices within 200 to 1,000 km, by the viewer's height, in place of at every pixel. */
+  /** `airAtVertices` has the effect of clear air found at vertices, not pixels, within 200 to 1,000 km by the viewer's height. */
   readonly airAtVertices?: typeof airAtVertices
 }
 

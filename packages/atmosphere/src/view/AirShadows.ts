@@ -40,7 +40,7 @@ export interface ScreenShadows extends SkyLayer {
    */
   lostAt(position: Vec3, isSky: Bool): Vec3 | undefined
   /**
-   * Draws what a mesh of air reads, before it is drawn; there are none but for their camera and their atmosphere's sun.
+   * Draws what a mesh of air reads, before that is drawn; shadows are for their own camera and their atmosphere's sun alone.
    *
    * @param isMarched - True if it marches its air itself, by {@link scatterAlong}; else it reads {@link dim}.
    */

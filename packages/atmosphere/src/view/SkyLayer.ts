@@ -77,8 +77,8 @@ export interface SkyLayer {
   /** Part of the sun's light that it leaves at a position in world space. */
   eclipse?(position: Vector3): Spectrum
   /**
-   * Counts changes by hand to light other than {@link background}, such as an option's; what is drawn once and
-   * kept is drawn again. Not what follows camera, sun and date by itself.
+   * Counts changes of settings that light other than {@link background} depends on: what is drawn once and kept, such as environment maps,
+   * is drawn again. Changes that follow camera, sun and date do not count.
    */
   readonly version?: number
   /** Bakes what the layer needs. Called before a render; of a frame, unless what is drawn is kept. */
@@ -98,13 +98,13 @@ export interface SkyLayer {
   /** Light of the air from this direction, all of the way, given that without this layer. */
   glow?(ray: SkyRay, without: Vec4): Vec4
   /**
-   * Light that comes by way of the air below the layer and its ground, where it is seen: light is asked
-   * for in branches in which it or something beyond the air is, given the air's transmittance.
+   * Light of the layer that the air below it and the ground scatter to the camera. `isSeen` tells where it shows; `light`, given the air's
+   * transmittance, is called in branches in which that or something beyond the air shows.
    */
   below?(ray: SkyRay): { isSeen: Bool; light: (transmittance: Vec4) => Vec4 }
   /** In-scattered light between the viewpoint and a point, given that without this layer. */
   inScatter?(ray: PointRay, without: Vec4): Vec4
-  /** Factor that {@link medium} has on the optical depth of the air before things, if it is one alone: shadows follow it. */
+  /** Factor by which {@link medium} multiplies the optical depth of the air, if it does nothing else: shadows follow it. */
   readonly airDensity?: Float
   /** Medium along a ray, in front of the sky too, given what air and layers before are. */
   medium?(ray: LayerRay, air: MediumSegment): MediumSegment
@@ -125,7 +125,7 @@ export interface SkyLayer {
   dispose?(): void
 }
 
-/** One of which a layer has: nothing else changes the sky. */
+/** Members of which a layer needs one at least: nothing else changes the sky. */
 const EFFECTS = ['eclipse', 'background', 'ground', 'glow', 'below', 'inScatter', 'medium'] as const
 
 /** @throws If it is no layer. */

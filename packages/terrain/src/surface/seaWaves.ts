@@ -21,7 +21,7 @@ export interface SeaWave {
   readonly vector: readonly [number, number, number]
   /** Unit vector along it. */
   readonly direction: readonly [number, number, number]
-  /** [m] */
+  /** Wavelength [m]. */
   readonly length: number
   /** Periods in a second, in deep water [1/s]. */
   readonly frequency: number

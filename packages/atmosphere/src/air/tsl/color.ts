@@ -23,7 +23,7 @@ export function linearSRGB(
   return unclampedSRGB(uniforms, spectrum).sub(lost).max(0)
 }
 
-/** As {@link linearSRGB}, with components below nought where colours are outside the gamut: of light that is taken away. */
+/** As {@link linearSRGB}, with components below 0 where colours are outside the gamut, for light that is taken away. */
 export function unclampedSRGB(uniforms: AtmosphereUniforms, spectrum: Vec4): Vec3 {
   return apply(uniforms.linearSRGB, spectrum)
 }

@@ -11,7 +11,7 @@ export const COSINE_LOBE = [Math.PI, (2 * Math.PI) / 3, Math.PI / 4] as const
  * The moments give it to degree 2; on horizontal planes, where the horizon's edge counts most, what
  * is missing is known exactly and blended in with the square of the normal's height.
  *
- * @param altitude - [m].
+ * @param altitude - Altitude of the plane above the ground [m].
  * @param cosNormal - Plane's normal against the zenith.
  * @param cosLight - μ_s.
  * @param cosNormalLight - Plane's normal against the light.

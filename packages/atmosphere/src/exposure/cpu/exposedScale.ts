@@ -21,9 +21,9 @@ export interface ExposureSettings {
   compensation: number
   /** Least and greatest luminance that is exposed for [cd/m²]. */
   limits: readonly [number, number]
-  /** Pictures of dark scenes are darker. */
+  /** True if pictures of dark scenes are darker. */
   darkNights: boolean
-  /** Part of the stops that the brightest tenth has over {@link LIGHT} by which the picture is darker, in [0, 1]. */
+  /** Part, in [0, 1], of the stops by which the brightest tenth is over {@link LIGHT}: the picture is darkened by it. */
   highlightPriority: number
 }
 

@@ -11,7 +11,7 @@ const LEAST_OPACITY = 1e-5
  * (1 − e^{−τ'})/(1 − e^{−τ}), τ' the optical depth up to the point and τ that of the ray.
  *
  * @param ahead - The ray up to the point.
- * @param depth - Optical depth of the ray where sky volumes were not asked for its end; without use for rays into the sky.
+ * @param depth - Optical depth of the whole ray, for rays to a point without a segment of a sky volume.
  */
 export function partAhead(
   { view, distance, segment }: LayerRay,

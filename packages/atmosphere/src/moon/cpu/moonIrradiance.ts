@@ -52,7 +52,7 @@ export function moonIrradiance(
  *
  * @param angle - Phase angle of the moon, in [0, π] [rad].
  * @param distance - Moon to planet [m].
- * @param planetRadius - [m].
+ * @param planetRadius - Radius of the planet [m].
  */
 export function earthshine(angle: number, distance: number, planetRadius: number): Spectrum {
   const planetAngle = Math.PI - angle

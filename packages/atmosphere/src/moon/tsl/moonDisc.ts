@@ -15,7 +15,7 @@ export interface MoonDisc {
   sunDirectionMapped: Vec3
   /** Mapped space to moon-fixed axes. */
   mappedToMoonFixed: Mat3
-  /** [rad] */
+  /** Angular radius of the disc [rad]. */
   angularRadius: Float
   /** Radiance of sunlit ground, for a Lommel–Seeliger factor of 1 [1/sr]. */
   sunlit: Vec4

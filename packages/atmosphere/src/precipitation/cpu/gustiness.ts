@@ -10,9 +10,9 @@ const waves = [
 const amplitude = Math.sqrt(2 / waves.length)
 
 /**
- * Gusts: deviation of the wind's speed from its mean, of standard deviation 1, and the way that it leads to since time 0.
+ * Gusts: deviation of the wind's speed from its mean, of standard deviation 1, and its integral since time 0.
  *
- * @param time - [s].
+ * @param time - Time [s].
  * @returns Deviation [–] and its integral [s].
  */
 export function gustiness(time: number): { speed: number; way: number } {

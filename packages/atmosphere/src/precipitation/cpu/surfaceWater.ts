@@ -18,7 +18,7 @@ const ROUGHNESS_LENGTH = 0.01
 /**
  * Pressure of saturated vapour over water [kPa].
  *
- * @param temperature - [°C].
+ * @param temperature - Temperature of the air [°C].
  * @see Murray 1967, "On the computation of saturation vapor pressure", J. Appl. Meteor. 6, pp. 203–204 (Tetens's formula)
  */
 export const saturationPressure = (temperature: number): number =>
@@ -73,7 +73,7 @@ export const settledDensity = (density: number, hours: number): number =>
  * Share of the ground that snow covers, in [0, 1) [–].
  *
  * @param water - Water equivalent of the snow, ≥ 0 [mm].
- * @param density - [kg/m³].
+ * @param density - Density of the snow [kg/m³].
  * @see Niu & Yang 2007, "An observation-based formulation of snow cover fraction", J. Geophys. Res. vol. 112, D21101
  */
 export function snowCoverFraction(water: number, density: number): number {

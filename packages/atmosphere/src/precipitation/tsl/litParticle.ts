@@ -8,8 +8,8 @@ import { particlePhase } from './particlePhase'
 /**
  * Luminance of a particle, in the unit of three's lights.
  *
- * What it scatters of a lamp's and the sun's light by its phase function; of sky and ground, the mean of what lies behind it, as a
- * drop refracts light from a field of view of 165° (Garg & Nayar 2007, "Vision and rain", §3), and an even part of all sides'.
+ * It scatters light of lamps and sun by its phase function. Of sky and ground it shows the mean of what lies behind it, as a drop refracts
+ * light from a field of view of 165° (Garg & Nayar 2007, "Vision and rain", §3), and an even part of the light from all sides.
  *
  * @param direction - View direction in the lattice's frame.
  * @param place - Its place in view space [world units].

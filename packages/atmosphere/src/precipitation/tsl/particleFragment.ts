@@ -12,7 +12,10 @@ const LOBED_AREA = 0.09
 export interface ParticleVaryings {
   /** Place across and along the streak, over its outer radius. */
   readonly across: Vec2
-  /** Half its way and inner radius (of soft ones its sharpness) over the outer one; a random number; depth in view space [world units]. */
+  /**
+   * Half its length and its inner radius (of soft particles the sharpness), both over the outer radius; a random number; depth in view
+   * space [world units].
+   */
   readonly shape: Vec4
   /** Luminance and opacity. */
   readonly light: Vec4

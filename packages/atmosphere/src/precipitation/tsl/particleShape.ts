@@ -3,9 +3,9 @@ import type { Float } from '../../tsl-types'
 
 /** Outline of a streak: all that are within `outer` of its axis, full up to `inner`. */
 export interface StreakShape {
-  /** [m]. */
+  /** Radius up to which it is full [m]. */
   readonly inner: Float
-  /** [m]. */
+  /** Radius at which it ends [m]. */
   readonly outer: Float
   /** Opacity inside, such that the streak takes as much light as the particle does [–]. */
   readonly opacity: Float
@@ -21,7 +21,7 @@ const SOFT_RADIUS = 1.83
  * that falls from 1 to 0 by `smoothstep` between `inner` and `outer`, along the way and at both ends. Twin: test/twins/precipitation/meanDepth.ts
  *
  * @param width - Diameter D, > 0 [m].
- * @param length - Way of its middle [m].
+ * @param length - Distance that its middle moves [m].
  * @param blur - Width of pixel and circle of confusion at its distance, > 0 [m].
  * @param isSoft - True for a particle that thins out from its middle on.
  */

@@ -150,7 +150,7 @@ export function particleVertex(
           .sqrt()
         const width = kind.width(diameter).mul(unit).toConst() as Float
         const length = way.length().toConst() as Float
-        // Of a way towards the camera only what is across counts.
+        // Of motion towards the camera only the part across the line of sight counts.
         const toCamera = head.add(tail).normalize().toConst() as Vec3
         const across = way.sub(toCamera.mul(way.dot(toCamera))).toConst() as Vec3
         const seenLength = across.length().toConst() as Float

@@ -19,7 +19,7 @@ const STEEPNESS = 0.35
  * Each cell of a layer has at most one ring at a time, at a new place in every period.
  *
  * @param place - On the water [m].
- * @param time - [s].
+ * @param time - Time [s].
  * @param ringRate - Drops that make rings [1/(m² s)]; more than 86 look like 86.
  */
 export function rippleSlope(place: Vec2, time: Float, ringRate: Float): Vec2 {

@@ -22,7 +22,7 @@ export interface AirSegment {
   /** h of its lowest point [m]. */
   lowestAltitude: Float
   hitsGround: Bool
-  /** [m] */
+  /** Length of the segment [m]. */
   length: Float
 }
 

@@ -5,8 +5,8 @@ import type { ViewNodes } from '../../view/ViewNodes'
 import { aerialPerspectiveTo, type AerialPerspective } from './aerialPerspective'
 
 /**
- * Distance up to which the air of vertices is taken, over the viewer's height [–], and its bounds [m]: near the horizon, where a triangle is
- * seen along hundreds of kilometres, each pixel finds its own, and so it does where triangles are as large as the planet bends.
+ * Distance up to which air is found at vertices, over the viewer's height [–], and its bounds [m]. Beyond, pixels find their own: near the
+ * horizon a triangle is seen along hundreds of kilometres, and from far away triangles bend with the planet.
  */
 const FAR = { height: 2.5, least: 2e5, most: 1e6 }
 

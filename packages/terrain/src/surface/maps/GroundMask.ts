@@ -86,7 +86,7 @@ export class GroundMask {
   /**
    * Sets the uniforms for the point that places count from; a terrain calls it by itself.
    *
-   * @param referencePoint - [m]
+   * @param referencePoint - Point that places in shaders count from [m].
    * @throws If the area does not fit a globe.
    */
   update(figure: Figure, referencePoint: Vector3): void {

@@ -114,7 +114,7 @@ export function groundZone(northing: Float): Vec2 {
   return vec2(line, dryness)
 }
 
-/** @param seaLevel - [m] */
+/** @param seaLevel - Surface of the sea above the ellipsoid [m]. */
 export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimate {
   const { height, patch, climate, up, pole, zone } = place
   const northing = up.dot(pole).toConst() as Float

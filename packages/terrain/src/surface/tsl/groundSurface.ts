@@ -63,7 +63,7 @@ export interface OwnSurface {
 /**
  * Rock, scree, grass, forest, sand and snow, by height, slope, curvature, latitude and noise, or by a mask; procedural, or of texture maps.
  *
- * @param seaLevel - [m]
+ * @param seaLevel - Surface of the sea above the ellipsoid [m].
  */
 export function groundSurface(
   place: GroundPlace,

@@ -157,7 +157,7 @@ export function foamCover(
 /**
  * Colour of water over its bed: what the way through it leaves of the bed, and deep water.
  *
- * @param depth - [m]
+ * @param depth - Depth of the water [m].
  */
 export function waterColor(bed: Vec3, depth: Float): Vec3 {
   const [r, g, b] = EXTINCTION

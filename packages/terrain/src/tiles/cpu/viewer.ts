@@ -4,7 +4,7 @@ import { isFlat, type Figure } from './figure'
 
 /** Viewer that tiles are chosen for. ECEF axes. */
 export interface Viewer {
-  /** [m] */
+  /** Position of the viewer [m]. */
   readonly position: Vector3
   /**
    * Point from which distances to tiles count [m]: above the ellipsoid as high as the viewer is above the
