@@ -26,7 +26,7 @@ const FEW_PAGES = 6
 const LONGEST_EDGE = 1 / 14.4
 const LONGEST_HASTY = 4 / 14.4
 
-/** Pages drawn for a camera over the made-up planet, each of which costs as much as the camera's picture. */
+/** Pages drawn for a camera over the procedural planet, each of which costs as much as the camera's picture. */
 const COSTLY_PAGES = 24
 
 /** Cameras between two lines of progress. */
@@ -57,7 +57,7 @@ export interface CrackSearch {
   readonly atLimb: number
 }
 
-/** Ground that is looked at: rough waves, or the made-up planet. */
+/** Ground that is looked at: rough waves, or the procedural planet. */
 type GroundName = 'waves' | 'mountains'
 
 /** A camera whose picture is not read yet. */
@@ -251,7 +251,7 @@ class CrackHunt {
 }
 
 /**
- * Looks for cracks from random cameras: the first half over the made-up planet, the others over rough waves.
+ * Looks for cracks from random cameras: the first half over the procedural planet, the others over rough waves.
  *
  * @param count - Number of cameras, a multiple of 200.
  * @param most - Time after which it ends [s].

@@ -39,7 +39,7 @@ function wavesOf(): Wave[] {
 }
 
 /**
- * Rough ground of plane waves from 60 km to 2 m, which costs a hundredth of the made-up planet's: thousands of cameras see their pages within seconds.
+ * Rough ground of plane waves from 60 km to 2 m, which costs a hundredth of the procedural planet's: thousands of cameras see their pages within seconds.
  */
 export class WaveHeights implements HeightSource {
   readonly #waves = wavesOf()

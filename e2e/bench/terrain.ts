@@ -160,7 +160,7 @@ class TerrainBench {
   }
 }
 
-/** Times the made-up planet from one height. */
+/** Times the procedural planet from one height. */
 async function timeView(
   renderer: WebGPURenderer,
   size: readonly [number, number],

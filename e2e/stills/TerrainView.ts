@@ -20,7 +20,7 @@ import { readPicture } from './readPicture'
 const SHADOW_EXTENT = 150
 const LIGHT_DISTANCE = 2000
 
-/** The made-up planet, as the terrain's quick start draws it. The renderer has a reversed depth buffer and high precision. */
+/** The procedural planet, as the terrain's quick start draws it. The renderer has a reversed depth buffer and high precision. */
 export class TerrainView {
   readonly #target: RenderTarget
   readonly #atmosphere: Atmosphere

@@ -1,4 +1,4 @@
-/** A still of the made-up planet of `@welkin/terrain`. */
+/** A still of the procedural planet of `@welkin/terrain`. */
 export interface TerrainStill {
   name: string
   /** Features to look for. */
@@ -20,7 +20,7 @@ export interface TerrainStill {
   }
 }
 
-/** The made-up planet: at one's feet, among its mountains, and from far above. */
+/** The procedural planet: at one's feet, among its mountains, and from far above. */
 export const terrains: TerrainStill[] = (
   [
     ['grass', 'a meadow: blades and tufts, no repetition', [0.494, 46.35, 1.7], [338, -8]],

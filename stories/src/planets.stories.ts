@@ -25,7 +25,7 @@ const meta: Meta<PlanetsArgs> = {
         type: 'select',
         labels: {
           earth: 'Earth',
-          'made-up': 'Made-up continents',
+          'made-up': 'Procedural continents',
           mars: 'Mars',
           titan: 'Titan',
           venus: 'Venus',
@@ -110,7 +110,7 @@ export const LowOrbit: Story = {
   tags: ['screenshot']
 }
 
-/** No picture at all: continents are made up. */
+/** No picture at all: continents are procedural. */
 export const MadeUp: Story = {
   args: { planet: 'made-up', height: 1e7, pitch: -90, sunElevation: 35, exposure: -2 },
   tags: ['screenshot', 'webgpu-only']

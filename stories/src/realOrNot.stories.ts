@@ -52,8 +52,8 @@ export default meta
 
 type Story = StoryObj<RealOrNotArgs>
 
-/** Simulated cumulus on the left, made ones on the right. */
+/** Simulated cumulus on the left, procedural ones on the right. */
 export const Ground: Story = { tags: ['screenshot'] }
 
-/** Simulated and made clouds from among them. */
+/** Simulated and procedural clouds, from among them. */
 export const Among: Story = { args: { view: 'among' } }

@@ -108,7 +108,7 @@ const MIST_FALLOFF = 220
 /** Fewer cells and texels in a still: a software renderer draws it. */
 const STILL = { resolution: 16, pageMemory: 100, pagesPerFrame: 4 }
 
-/** A made-up planet from a walker's feet to orbit: one mesh, without a byte of data. */
+/** A procedural planet from a walker's feet to orbit: one mesh, without a byte of data. */
 export async function createTerrain(
   canvas: HTMLCanvasElement,
   args: TerrainArgs

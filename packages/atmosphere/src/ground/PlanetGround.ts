@@ -133,7 +133,7 @@ export class PlanetGround implements SkyLayer {
     return this.#options.nightLights
   }
 
-  /** Other continents of a made-up planet. */
+  /** Seed of a procedural planet: another number, other continents. */
   get seed(): number {
     return this.#options.seed
   }

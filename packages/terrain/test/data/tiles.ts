@@ -41,7 +41,7 @@ export function pageAt(longitude: number, latitude: number, level: number, steps
   return pageOf(face, level, middle(cube.dot(first)), middle(cube.dot(second)), steps)
 }
 
-/** Height of made-up hills at a place [°], smooth enough for the pixels of level 4 [m]. */
+/** Height of procedural hills at a place [°], smooth enough for the pixels of level 4 [m]. */
 export const hills = (longitude: number, latitude: number): number =>
   1000 * Math.sin((6 * longitude * Math.PI) / 180) * Math.cos((5 * latitude * Math.PI) / 180) + 1500
 
