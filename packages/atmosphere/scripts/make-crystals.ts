@@ -176,7 +176,7 @@ const dogText = encodePhases(dogs.map(row => row.map(color => color.map(v => Mat
 const file = fileURLToPath(new URL('../src/optics/crystalData.ts', import.meta.url))
 writeFileSync(
   file,
-  `/** Made by scripts/make-crystals.ts; cpu/decodePhases.ts says how to read them: crystals all ways, and level plates by elevation of the sun. */
+  `/** Made by scripts/make-crystals.ts; cpu/decodePhases.ts says how to read them: randomly oriented crystals, and level plates by elevation of the sun. */
 export const crystalData =
   ${JSON.stringify(halo)}
 export const sunDogData =

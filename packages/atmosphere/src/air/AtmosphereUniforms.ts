@@ -24,7 +24,7 @@ export class AtmosphereUniforms {
   readonly rayleighScaleHeight = number()
   /** Altitudes where the layers above the lowest begin [m]. */
   readonly rayleighLayerBases = vector3()
-  /** 1/H of those layers less that of the layer below; 0 for layers that there are not [1/m]. */
+  /** 1/H of those layers less that of the layer below; 0 for unused layers [1/m]. */
   readonly rayleighLayerSlopes = vector3()
   /** Height of the homogeneous atmosphere of molecules [m]. */
   readonly homogeneousHeight = number()

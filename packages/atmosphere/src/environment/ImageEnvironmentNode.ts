@@ -55,7 +55,7 @@ export function mirrored(builder: NodeBuilder, map: Node, diffuse: boolean | nul
     context: { getUV?: (node: Node, builder: NodeBuilder) => unknown }
     lightsNode: { getLights?: () => object[] } | null
   }
-  // Light on matte surfaces is what three asks about the normal, not the mirrored ray.
+  // For light on matte surfaces three looks the map up by the normal, not by the mirrored ray.
   if (context.getUV?.(map, builder) !== normalWorld) return map
   const lights = lightsNode?.getLights?.() ?? []
   const hasProbe = lights.some(light => 'isLightProbe' in light && 'atmosphere' in light)

@@ -83,8 +83,7 @@ function checkRising(
  *
  * From a histogram of log2 luminance the mean between two {@link percentiles} becomes 0.17, less where a large part is much
  * brighter ({@link highlightPriority}), and the upper percentile no more than 8: for tone mappings with soft highlights, such as
- * `AgXToneMapping` and `ACESFilmicToneMapping`. What is over 8 stops darker than the upper percentile counts less and over 12 not at all,
- * such as the black of space. The picture
+ * `AgXToneMapping` and `ACESFilmicToneMapping`. What is over 8 stops darker than the upper percentile counts less and over 12 not at all. The picture
  * is read back a frame or more later, without a wait, one at a time.
  *
  * `luminanceScale` is that of all cameras, so an atmosphere has one of these. Lamps and emissive materials of your own

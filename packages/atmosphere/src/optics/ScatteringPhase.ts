@@ -22,7 +22,7 @@ export interface ScatteringPhase {
   /** Part of the light scattered into a direction, at the four wavelengths [1/sr]; to be called inside of a shader function. */
   phase(angles: ScatteringAngles): Vec4
   /**
-   * Phase function of light that was diffracted besides, on its way in a cloud; left out by particles whose diffraction is too narrow to
+   * Phase function of light that was also diffracted on its path through a cloud; left out by particles whose diffraction is too narrow to
    * change anything.
    */
   diffracted?(angles: ScatteringAngles): Vec4

@@ -72,7 +72,7 @@ export class AtmosphereTables {
     this.parameters = parameters
   }
 
-  /** Frees the tables if nobody else has called {@link update} and not yet this. */
+  /** Frees the tables, unless another user has called {@link update} and not yet this. */
   release(user: object): void {
     this.#users.delete(user)
     this.removeSource(user)

@@ -33,8 +33,7 @@ export const VOLUME_SLOTS = 2
 export const VOLUME_TILES = [6, 4] as const
 
 /**
- * Mean extinction along rays: elevation × distance, and a row of the whole way's transmittance. It costs an
- * elevation little, and needs many.
+ * Mean extinction along rays: elevation × distance, and a row of the whole ray's transmittance. Elevations are cheap here, and many are needed.
  */
 export const DEPTH_SIZE = [192, 32] as const
 

@@ -6,7 +6,7 @@ import type { SkyLayer } from './SkyLayer'
 import { checkAtmosphere, viewNodes, type ViewNodes } from './ViewNodes'
 
 /**
- * Base of nodes that look at an atmosphere: they see to it that what they read is up to date. Extend it
+ * Base of nodes that read an atmosphere, which is brought up to date before they are drawn. Extend it
  * for shaders of your own; `view` has the uniforms and tables.
  *
  * ```ts

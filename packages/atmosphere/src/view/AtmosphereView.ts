@@ -17,7 +17,7 @@ const DEEP_NIGHT = -0.42
 const _position = new Vector3()
 const _direction = new Vector3()
 
-/** An atmosphere as far as a camera's view and layers of the sky ask it. */
+/** Part of an atmosphere that a camera's view and layers of the sky read. */
 export interface ViewedAtmosphere {
   readonly parameters: AtmosphereParameters
   readonly ellipsoid: Ellipsoid

@@ -33,7 +33,7 @@ export interface LayerRay extends Pick<SkyRay, 'view' | 'direction' | 'cosView' 
   readonly distance?: Float
   /** True if the planet is in the way of the sky. */
   readonly hitsGround?: Bool
-  /** Part of the sky volumes up to the point, where they were asked. */
+  /** Look-up of the sky volumes up to the point; absent where they are not sampled. */
   readonly segment?: VolumeSegment
 }
 
@@ -91,11 +91,11 @@ export interface SkyLayer {
    */
   background?(ray: SkyRay, farther: Vec4): Vec4
   /**
-   * Sunlight from the whole way to the ground and the ground itself, given the model's of even albedo;
-   * for rays that do not hit the ground what is given. Before `glow`; no derivatives.
+   * Sunlight scattered by the air up to the ground, and by the ground, given the model's, of even albedo; returns what is given where the
+   * ray misses the ground. Before `glow`; no derivatives.
    */
   ground?(ray: SkyRay, model: Vec4): Vec4
-  /** Light of the air from this direction, all of the way, given that without this layer. */
+  /** Light of all the air in this direction, given that without this layer. */
   glow?(ray: SkyRay, without: Vec4): Vec4
   /**
    * Light of the layer that the air below it and the ground scatter to the camera. `isSeen` tells where it shows; `light`, given the air's

@@ -7,7 +7,7 @@ import type { CloudField } from './CloudField'
 export const kindsOf = ({ layers }: CloudField): string =>
   [...layers].map(({ parameters }) => (isStorm(parameters) ? 's' : 'c')).join('')
 
-/** A field for shaders that are compiled anew whenever `kindsOf` it changes: they have no code for kinds that there are not. */
+/** A field for shaders that are compiled anew whenever `kindsOf` it changes: they have code for the kinds that it has, and no other. */
 export const compiledByKinds = (field: CloudField): CloudField =>
   Object.create(field, { kinds: { get: () => kindsOf(field) } }) as CloudField
 

@@ -34,7 +34,7 @@ export interface LightningEvent {
   distance: number
   /** Time from the flash to its thunder [s]. */
   delay: number
-  /** Time over which its thunder arrives: the way of sound to the farthest part, less that to the nearest [s]. */
+  /** Time over which its thunder arrives: from the nearest part to the farthest [s]. */
   duration: number
 }
 

@@ -35,7 +35,7 @@ import { meanInverseSquare } from './tsl/lineLight'
 const CLOUD_SOFTNESS = 250
 /** Softness of light in haze: a line is as soft as its picture's pixels are wide [m]. */
 const HAZE_SOFTNESS = 25
-/** Longest way through lit haze [m]. */
+/** Longest path through lit haze [m]. */
 const LONGEST_HAZE = 60_000
 
 /** Edge of a pixel of the glow, in marched ones. Greater: no relief in lit clouds (*Storm at night*); 2: 0.03 ms more. */

@@ -16,7 +16,7 @@ import type { AtmosphereView } from '@welkin/atmosphere'
 const SIZE = 64
 /** Half width of the square about the camera's subpoint in which columns are looked for [m]. */
 const COLUMNS_REACH = 20_000
-/** Optical depth over the greatest around, of columns that charge. */
+/** Least optical depth of columns that charge, over the greatest around [–]. */
 const STRONG = 0.5
 /** Distance of flashes from the camera, at least [m]. */
 const NEAREST = 1000
@@ -27,7 +27,7 @@ const SAMPLES = 8
 interface Column {
   /** Its place on the sphere of altitude 0, from the planet's centre, in the mapped space [m]. */
   readonly place: Vector3
-  /** Distance over the ground from the camera that it was looked for from [m]. */
+  /** Distance over the ground from the camera, when it was searched for [m]. */
   readonly distance: number
   /** Optical depth. */
   readonly depth: number

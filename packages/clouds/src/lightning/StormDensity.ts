@@ -26,11 +26,11 @@ const SLICES = 32
 const TILES = [8, 4] as const
 /** Half width of the box [m]. */
 export const REACH = 8000
-/** Samples of a way through it: fewer miss clouds between. */
+/** Samples of a path through it: fewer miss clouds between. */
 const SAMPLES = 8
-/** Samples of a way out of it, which is longer. */
+/** Samples of a path out of it, which is longer. */
 const SAMPLES_OUT = 24
-/** Directions in which light gets out, over which the ways out are averaged. */
+/** Directions in which light leaves, over which paths are averaged. */
 export const DIRECTIONS = 24
 /** Scaled depth up to which light is taken to be even [–]. Smaller: bright rims (*Storm at night*). */
 export const OPEN = 4
@@ -40,7 +40,7 @@ const THINNEST = 3
 /**
  * Density of a storm around a flash, as a box of coarse cells, drawn once for each flash: how much of its light comes out on each side.
  *
- * Light diffuses out where the way is short. With τ the depth from the channel to a place, ⟨⟩ the mean over directions, a place gets
+ * Light diffuses out where the path is short. With τ the depth from the channel to a place, ⟨⟩ the mean over directions, a place gets
  * (1/τ) / ⟨1/τ⟩ of what an even ball would send there: 1 for a channel in the middle of a ball, less behind other clouds. All light gets out.
  */
 export class StormDensity {
@@ -151,7 +151,7 @@ export class StormDensity {
   /**
    * Scaled depth from the source to a place in the flash's frame.
    *
-   * @param partAt - Part of the way at an even number in [0, 1), and its slope: where samples are dense.
+   * @param partAt - Part of the path at an evenly spaced number in [0, 1), and its slope: where samples are dense.
    */
   #depthTo(
     place: Vec3,

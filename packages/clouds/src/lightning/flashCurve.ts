@@ -13,7 +13,7 @@ export interface Stroke {
 /** Light of a flash over time. */
 export interface FlashCurve {
   readonly strokes: readonly Stroke[]
-  /** Current that goes on flowing after a stroke: from when, for how long [s], and its light [lm]. */
+  /** Continuing current after a stroke: from when, for how long [s], and its light [lm]. */
   readonly continuing: { readonly time: number; readonly duration: number; readonly power: number }
   /** Time after which it is dark [s]. */
   readonly duration: number
@@ -38,7 +38,7 @@ const LATER_PEAK = 4.8e8
 /** Luminous efficacy of a body of 20,000 K between 0.4 and 1.1 µm [lm/W]. */
 const EFFICACY = 155
 
-/** Light per ampere of a peak of 30 kA, and a current that goes on: 150 A [lm] (Shindo & Uman 1989, J. Geophys. Res. 94, 5189). */
+/** Light of a continuing current of 150 A, as much per ampere as of a peak of 30 kA [lm] (Shindo & Uman 1989, J. Geophys. Res. 94, 5189). */
 const CONTINUING_POWER = (FIRST_PEAK * EFFICACY * 150) / 30_000
 /** Share of flashes to the ground that have one, and its mean duration [s]. */
 const CONTINUING_SHARE = 0.4
@@ -57,8 +57,8 @@ export function emittedUntil(time: number): number {
 }
 
 /**
- * Light of a flash to the ground: a first stroke, later ones 60 ms apart in the geometric mean, and perhaps a current that goes on after
- * the last one; or of one in the cloud: more and weaker pulses in a glow.
+ * Light of a flash to the ground: a first stroke, later ones 60 ms apart in the geometric mean, and perhaps a continuing current after the
+ * last one; or of one in the cloud: more and weaker pulses in a glow.
  *
  * @see Rakov & Uman 2003, "Lightning: physics and effects", tables 1.1 and 4.2
  * @see Zhu et al. 2015, "Some properties of negative cloud-to-ground flashes", J. Atmos. Sol.-Terr. Phys. 136, pp. 16–22: 1085 flashes of 3.3 strokes in

@@ -36,7 +36,7 @@ export interface HeightTilesOptions extends TileOptions {
   /** Bounds of what is taken for a height, default −11,500 (Terrain-RGB −9,999) and 9,000: other pixels are holes [m]. */
   lowest?: number
   highest?: number
-  /** Steepest slope that the data has, > 0, default 3: rise over way [–]. */
+  /** Steepest slope that the data has, > 0, default 3: rise over run [–]. */
   steepest?: number
 }
 

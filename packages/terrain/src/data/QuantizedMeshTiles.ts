@@ -9,7 +9,7 @@ export interface QuantizedMeshTilesOptions extends Omit<HeightTilesOptions, 'loa
   /** Heights along an edge of the grid that a tile's triangles become, default 64. */
   size?: number
   /**
-   * Loads the bytes of a tile, by default with `fetch`, for instance to send a key along. Null says that there is none, as do answers
+   * Loads the bytes of a tile, by default with `fetch`, for instance to send a key along. Null means that the tile does not exist, as do HTTP statuses
    * 204, 400, 403, 404 and 410 by default; an error, that it may be tried again.
    */
   loadTile?: (url: string, signal: AbortSignal) => Promise<ArrayBuffer | null>

@@ -27,7 +27,7 @@ export interface TileOptions {
   /** Ellipsoid of revolution that the tiles lie on, default WGS84. */
   ellipsoid?: Ellipsoid
   /**
-   * Loads the pixels of a picture, by default with the browser's own means. Null says that there is none, as do answers 204,
+   * Loads the pixels of a picture, by default with the browser's own means. Null means that there is no picture, as do HTTP statuses 204,
    * 400, 403, 404 and 410 by default; an error, that it may be tried again.
    */
   loadPixels?: (url: string, signal: AbortSignal) => Promise<Pixels | null>

@@ -29,7 +29,7 @@ const bytesOfPage = (resolution: number, density: number): number =>
 /** Texels of a page along its edge, for pixels: one is two to four pixels wide at 1080 lines, as tiles are seen at a `detail` of 1.2. */
 const FINEST_TEXELS = 132
 
-/** Texels of a page per cell of its tile, for pixels: fewer if there is not the memory. */
+/** Texels of a page per cell of its tile, for pixels: fewer where memory is short. */
 function densityOf(resolution: number, bytes: number): number {
   let density = Math.max(Math.floor(FINEST_TEXELS / resolution), 1)
   while (density > 1 && bytes < ENOUGH_PAGES * bytesOfPage(resolution, density)) density >>= 1

@@ -94,7 +94,7 @@ function leaveOut(selection: TileSelection, hidden: ReadonlySet<Tile>, isKept: b
  * const terrain = new Terrain(atmosphere, heights, { horizon: new TerrainHorizon() })
  * ```
  *
- * Tiles are gone through from near to far. Lines across those that lie wholly before a tile are on the ground as it is drawn, or below it, whatever
+ * Tiles are visited from near to far. Lines across those that lie wholly before a tile are on the ground as it is drawn, or below it, whatever
  * share of its parent's page it is drawn with: what is seen under them is hidden. Their heights come back from the GPU.
  */
 export class TerrainHorizon {

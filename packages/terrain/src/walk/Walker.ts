@@ -280,7 +280,7 @@ export class Walker {
     const wading = 1 - (1 - SWIMMING) * Math.min(Math.max(depth, 0), 1)
     const length = wish.length()
     const climb = this.#state === 'standing' && length > 0 ? wish.dot(gradient) / length : 0
-    // In the air one goes on unless one wishes otherwise.
+    // In the air the velocity stays, unless another one is wished for.
     if (isFree && length === 0) way.copy(velocity).multiplyScalar(seconds)
     else {
       wish.multiplyScalar((this.#speed * wading) / Math.hypot(1, climb))

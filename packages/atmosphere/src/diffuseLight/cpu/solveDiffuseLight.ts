@@ -114,7 +114,7 @@ class Gatherer {
   readonly depth = new Float64Array(4)
   readonly #p: AtmosphereParameters
   readonly #sunlight: Sunlight
-  /** Over which air thins out, by and large [m]. */
+  /** Approximate scale height of the air [m]. */
   readonly #height: number
   readonly #mie: [number, number, number][]
   readonly #sun = new Float64Array(4)

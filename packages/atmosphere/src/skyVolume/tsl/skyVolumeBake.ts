@@ -43,8 +43,7 @@ export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
 }
 
 /**
- * Shader of the table of mean extinction: columns are elevations, rows distances; the last row has the
- * transmittance of all the way.
+ * Shader of the table of mean extinction: columns are elevations, rows distances; the last row has the transmittance of the whole ray.
  */
 export function bakeDepth(air: Air, viewpoint: Viewpoint): Vec4 {
   return Fn(() => {

@@ -13,7 +13,7 @@ const smooth = (from: number, to: number, x: number): number => {
 }
 
 /**
- * Green light of crystals at the third wavelength [1/sr], from angles: crystals all ways, and sun dogs beside the sun.
+ * Green light of crystals at the third wavelength [1/sr], from angles: randomly oriented crystals, and sun dogs beside the sun.
  *
  * @param viewElevation - Elevation of the view ray [°].
  * @param sunElevation - [°].

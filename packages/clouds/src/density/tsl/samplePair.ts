@@ -49,7 +49,7 @@ const sampleNearby = (sample: CloudSample, direction: Vec3, along: Float): Cloud
  * @param middle - The place between both, within the altitudes of the same layers.
  * @param length - Distance between them [m].
  * @param direction - Direction of the ray, in the mapped space.
- * @param range - The layers that are looked at.
+ * @param range - The layers that are sampled.
  */
 export function samplePair(
   field: CloudField,

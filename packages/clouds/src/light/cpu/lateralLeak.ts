@@ -1,7 +1,7 @@
 /**
  * Exponent of the lateral leak, the share of a slab's multiply scattered light that a sphere keeps: a polynomial in
- * the sample's part of the way through the cloud along the ray of light, x; in ln(1 + (1 − g′) D), with D the
- * sphere's scaled optical diameter; and in the length of that way over the diameter, q.
+ * the sample's part of the path through the cloud along the ray of light, x; in ln(1 + (1 − g′) D), with D the
+ * sphere's scaled optical diameter; and in the length of that path over the diameter, q.
  *
  * Fitted by scripts/fit-leak.ts to Monte-Carlo solutions of spheres with D from 0.3 to 40 and g′ from 0 to
  * 0.61, against slabs of thickness qD with the light at their zenith: within 9 % (root mean square, weighted

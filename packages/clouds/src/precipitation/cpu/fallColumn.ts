@@ -9,7 +9,7 @@ export interface FallColumn {
   readonly share: number
   /** Altitude above which nothing falls [m]. */
   readonly ceiling: number
-  /** Optical depths of the thirds of the way to altitude 0, from above, without what is only diffracted. */
+  /** Optical depths of the three thirds of the path down to altitude 0, from above, without what is only diffracted. */
   readonly parts: readonly [number, number, number]
 }
 

@@ -136,9 +136,8 @@ interface FallPlace {
 }
 
 /**
- * Rate [mm/h] and rank of the column from which something falls that lags by `lag`, of {@link fallLag}: it left its cloud downwind, where
- * the wind, which grows with height, has carried the cloud in the meantime. The column's rank is looked up there; streaks are billows of
- * the cloud at the same point.
+ * Rate [mm/h] and rank of the column from which something falls that lags by `lag`, of {@link fallLag}: its cloud has drifted downwind since,
+ * faster than it, as wind grows with height. The column's rank is looked up there; streaks are billows of the cloud at the same point.
  */
 function fallAlong(
   lag: Vec2,

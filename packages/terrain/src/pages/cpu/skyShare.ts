@@ -11,7 +11,7 @@ export const FINENESS = 0.3
  * Float64 twin of the share of the sky, by angles in place of slopes.
  *
  * @param heightAt - Height at a place east and north of here [m].
- * @param slopeEast - Slope of the ground here, rise over way, as `slopeNorth`.
+ * @param slopeEast - Slope of the ground here, rise over run, as `slopeNorth`.
  * @returns In (0, 1].
  */
 export function skyShare(

@@ -155,7 +155,7 @@ export function foamCover(
 }
 
 /**
- * Colour of water over its bed: what the way through it leaves of the bed, and deep water.
+ * Colour of water over its bed: light of the bed that the path through the water leaves, and that of deep water.
  *
  * @param depth - Depth of the water [m].
  */
