@@ -12,13 +12,13 @@ import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 
 /** Options of {@link SkyEnvironmentNode}. */
 export interface SkyEnvironmentOptions extends EnvironmentOptions {
-  /** Texels along the edge of a cube face, a power of two in [256, 2048]. */
+  /** Texels along the edge of a cube face, a power of two in [256, 2048]; by default 256. */
   size?: number
-  /** Angle by which the sun or the axes of the world may turn before it is drawn again, > 0 [°]. */
+  /** Angle by which the sun or the axes of the world may turn before it is drawn again, > 0; by default 0.1 [°]. */
   angle?: number
-  /** Climb of the camera before it is drawn again, as a part of its height (at least 500 m), > 0. */
+  /** Climb of the camera before it is drawn again, as a part of its height (at least 500 m), > 0; by default 0.1 [–]. */
   climb?: number
-  /** Picture in front of the sky: `cloudEnvironment` of `@welkin/clouds`. Shared, not owned. */
+  /** Picture in front of the sky: `cloudEnvironment` of `@welkin/clouds`; by default none. Shared, not owned. */
   overlay?: SkyOverlay | null
 }
 

@@ -40,7 +40,7 @@ export interface DayCycleOptions {
   paused?: boolean
   /** Time in which exposure adapts by 63 %, ≥ 0; 0 adapts at once [s]. Default 0.3. */
   adaptation?: number
-  /** Options of `exposureFor`. */
+  /** Options of `exposureFor`; by default its own. */
   exposureOptions?: ExposureOptions
   /** Exposure by what the camera sees, in place of `exposureFor`; by default null. Shared, not owned. */
   autoExposure?: AutoExposureNode | null

@@ -16,11 +16,11 @@ import { checkAtmosphere } from '../view/ViewNodes'
 
 /** Options of {@link exposureFor}. */
 export interface ExposureOptions {
-  /** Light sources besides the sun, such as a moon's. */
+  /** Light sources besides the sun, such as a moon's; by default none. */
   sources?: readonly LightSource[]
   /** Illuminance that is always present, of the night sky or a city, and under clouds too; > 0 [lx]. By default the night sky's. */
   floor?: number
-  /** Clouds in the sky, in the mean over clouds and gaps: a `CloudCover` of `@welkin/clouds`. */
+  /** Clouds in the sky, in the mean over clouds and gaps: a `CloudCover` of `@welkin/clouds`. By default none. */
   clouds?: CloudedSky | null
 }
 

@@ -16,9 +16,9 @@ import type { FogOvercast } from './FogOvercast'
 
 /** Options of {@link DistanceFog}. */
 export interface DistanceFogOptions {
-  /** Density as in three's `FogExp2`: at distance 1/density e⁻¹ of the light is left; in [0, 100] [1/m]. */
+  /** Density as in three's `FogExp2`: at distance 1/density e⁻¹ of the light is left; in [0, 100], default 1e-4 [1/m]. */
   density?: number
-  /** Altitudes of the camera between which the fog fades away, rising [m]. */
+  /** Altitudes of the camera between which the fog fades away, rising; default [5000, 15,000] [m]. */
   fade?: readonly [number, number]
 }
 

@@ -6,24 +6,24 @@ import { checkSources, type LightSource } from '../view/LightSource'
 
 /** Options of `HeightFog`. */
 export interface HeightFogOptions {
-  /** Extinction at the base, ≥ 0 [1/m]. Visibility is about 4/density. */
+  /** Extinction at the base, ≥ 0, default 0.01 [1/m]. Visibility is about 4/density. */
   density?: number
-  /** Altitude over which the density falls to 1/e, in [0.1, 1e5] [m]. */
+  /** Altitude over which the density falls to 1/e, in [0.1, 1e5], default 50 [m]. */
   falloff?: number
-  /** Altitude at which the fog has its density: the valley's floor [m]. */
+  /** Altitude at which the fog has its density, such as that of a valley's floor; default 0 [m]. */
   base?: number
-  /** Single-scattering albedo of the droplets at the four wavelengths, in [0, 1]. */
+  /** Single-scattering albedo of the droplets at the four wavelengths, in [0, 1], default 1. */
   albedo?: Spectrum
-  /** Asymmetry g of the droplets' phase function, in [0, 0.95]; without effect if there are `droplets`. */
+  /** Asymmetry g of the droplets' phase function, in [0, 0.95], default 0.75; without effect if there are `droplets`. */
   asymmetry?: number
   /**
    * Droplets of a size, `droplets({ radius: 8 })`, with fogbow, glory and corona; shared, not owned. Null,
    * the default, for the smooth phase function of `asymmetry`.
    */
   droplets?: ScatteringPhase | null
-  /** Light sources besides the sun, such as the moon's `source`. */
+  /** Light sources besides the sun, such as the moon's `source`; default none. */
   sources?: readonly LightSource[]
-  /** Altitudes of the camera between which the fog fades away, rising [m]. */
+  /** Altitudes of the camera between which the fog fades away, rising; default [5000, 15,000] [m]. */
   fade?: readonly [number, number]
 }
 

@@ -31,7 +31,7 @@ export interface PlanetGroundOptions {
   surface?: Texture | null
   /** Open water in its red channel, same projection. Without one, a `surface` has no water. */
   water?: Texture | null
-  /** Night lights of towns, same projection. */
+  /** Night lights of towns, same projection; default none. */
   nightLights?: Texture | null
   /** Luminance of white in `nightLights` [cd/m²], default 2. */
   nightLuminance?: number
@@ -39,7 +39,7 @@ export interface PlanetGroundOptions {
   roughness?: number
   /** Wind over the sea, in [0, 40], default 7 [m/s]: calm water glints more sharply. */
   windSpeed?: number
-  /** Seed of a procedural planet: another number, other continents. */
+  /** Seed of procedural continents, finite, default 0. */
   seed?: number
 }
 

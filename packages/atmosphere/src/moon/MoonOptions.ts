@@ -3,13 +3,13 @@ import type { FlareOptions } from '../halo/Flare'
 
 /** Options of `Moon`. */
 export interface MoonOptions {
-  /** Direction to the moon in world space, any length; null follows the date. */
+  /** Direction to the moon in world space, any length; null, the default, follows the date. */
   direction?: Vector3 | null
-  /** Phase: 0 new, 0.25 first quarter, 0.5 full, 0.75 last quarter, 1 new; null follows the geometry. */
+  /** Phase: 0 new, 0.25 first quarter, 0.5 full, 0.75 last quarter, 1 new; null, the default, follows the geometry. */
   phase?: number | null
-  /** Distance from the observer [m]; null follows the date, or is the mean distance without one. */
+  /** Distance from the observer [m]; null, the default, follows the date, or is the mean distance without one. */
   distance?: number | null
-  /** Radius of the moon [m]. Its light grows with its area. */
+  /** Radius of the moon, default 1,737,400 [m]. Its light grows with its area. */
   radius?: number
   /** Factor on the brightness of the disc and on moonlight, ≥ 0, default 1. At 0 it still eclipses the sun. */
   strength?: number
@@ -17,7 +17,7 @@ export interface MoonOptions {
   earthshine?: number
   /** Lights the air: glow of the sky, and haze. Default true. */
   lightsAir?: boolean
-  /** Halo around the disc; it waxes and wanes with the moon's light. */
+  /** Halo around the disc; it waxes and wanes with the moon's light. Defaults: see {@link FlareOptions}. */
   flare?: FlareOptions
   /** Width of the map of the moon's ground, a power of two in [16, 8192], default 1024 [texels]. */
   mapSize?: number

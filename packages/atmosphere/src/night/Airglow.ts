@@ -12,13 +12,13 @@ import { number, vector4 } from '../uniforms'
 
 /** Options of {@link Airglow}. */
 export interface AirglowOptions {
-  /** Luminance of the layer seen perpendicularly, in [0, 1e9] [cd/m²]. */
+  /** Luminance of the layer seen perpendicularly, in [0, 1e9], default 1e-4 [cd/m²]. */
   luminance?: number
-  /** Altitude of the layer's middle, in [1, 1e7] [m]. */
+  /** Altitude of the layer's middle, in [1, 1e7], default 96,000 [m]. */
   altitude?: number
-  /** Standard deviation of its emission over altitude, in [1, 1e6] [m]. */
+  /** Standard deviation of its emission over altitude, in [1, 1e6], default 4000 [m]. */
   width?: number
-  /** Spectral radiance at the four wavelengths; only the ratios count. */
+  /** Spectral radiance at the four wavelengths, default greenish; only the ratios count. */
   spectrum?: Spectrum
   /** Factor on the physical brightness, finite, ≥ 0, default 1. */
   intensity?: number

@@ -11,7 +11,7 @@ import { LightQuery } from './LightQuery'
 
 /** Options of {@link sunIlluminanceAt} and {@link moonIlluminanceAt}. */
 export interface IlluminanceOptions {
-  /** Clouds in the sky, in the mean over clouds and gaps: a `CloudCover` of `@welkin/clouds`. */
+  /** Clouds in the sky, in the mean over clouds and gaps: a `CloudCover` of `@welkin/clouds`. By default none. */
   clouds?: CloudedSky | null
 }
 

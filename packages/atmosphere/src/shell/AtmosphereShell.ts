@@ -56,7 +56,7 @@ export interface AtmosphereShellOptions {
    * `parameters` object, and its planet is where the body is. For the model `'tables'` alone.
    */
   shafts?: AirShadows
-  /** Output per luminance where the sun is a direction [1/(cd/m²)]. */
+  /** Output per luminance where the sun is a direction, > 0, default 1e-4 [1/(cd/m²)]. */
   luminanceScale?: number
 }
 

@@ -4,11 +4,11 @@ import type { Star } from './starEncoding'
 
 /** Options of {@link proceduralStars}. */
 export interface ProceduralStarsOptions {
-  /** Number of stars, an integer in [1, 50000]. */
+  /** Number of stars, an integer in [1, 50000], default 5000. */
   count?: number
-  /** Magnitude of the faintest star, in [−10, 20]. */
+  /** Magnitude of the faintest star, in [−10, 20], default 6. */
   faintest?: number
-  /** Seed of the random numbers: the same seed gives the same sky. */
+  /** Seed of the random numbers, finite, default 1: the same seed gives the same sky. */
   seed?: number
 }
 

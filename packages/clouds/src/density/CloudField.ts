@@ -41,7 +41,7 @@ const _rotation = new Quaternion()
 
 /** Options of {@link CloudField}. */
 export interface CloudFieldOptions {
-  /** Cloud cover of the whole planet: `cloudWorldMap(texture)`. */
+  /** Cloud cover of the planet or a part of it: `cloudWorldMap(texture)`; by default none. */
   worldMap?: CloudWorldMap | null
   /** Noise to share between fields; left out, the field makes and owns its own. */
   noise?: CloudNoise

@@ -30,11 +30,11 @@ import { matrix3, matrix4, number, vector3 } from '../uniforms'
 
 /** Options of {@link cloudEnvironment}. */
 export interface CloudEnvironmentOptions {
-  /** Edge of the square map of all directions, in [16, 2048] [pixels]. */
+  /** Edge of the square map of all directions, in [16, 2048]; by default 256 [pixels]. */
   size?: number
   /** Fineness of the march; by default `'low'`. */
   quality?: CloudQualityName | CloudQuality
-  /** Distance that the wind may carry clouds before they are drawn again, > 0 [m]. */
+  /** Distance that the wind may carry clouds before they are drawn again, > 0; by default 200 [m]. */
   drift?: number
 }
 

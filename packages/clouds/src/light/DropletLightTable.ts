@@ -14,7 +14,7 @@ export interface DropletLightOptions {
   dropletRadius?: number
   /** Crystals of clouds above 4.6 to 8.2 km, with halos; shared, not owned. Default: null. */
   crystals?: ScatteringPhase | null
-  /** Share of the extinguished light that is scattered, in [0, 0.99999]. */
+  /** Share of the extinguished light that is scattered, in [0, 0.99999], default 0.99999. */
   scatteringAlbedo?: number
 }
 

@@ -34,13 +34,13 @@ export interface CloudsOptions {
   quality?: CloudQualityName | CloudQuality
   /** See {@link CloudsNode.time}; by default null. */
   time?: number | null
-  /** See {@link CloudsNode.nightIlluminance}. */
+  /** See {@link CloudsNode.nightIlluminance}; by default that of `NightLightProbe`. */
   nightIlluminance?: number
   /** See {@link CloudsNode.ambient}; by default 1. */
   ambient?: number
   /** See {@link CloudsNode.accumulates}; by default true. */
   accumulates?: boolean
-  /** Cloud cover of the whole planet: `cloudWorldMap(texture)`. */
+  /** Cloud cover of the planet or a part of it: `cloudWorldMap(texture)`; by default none. */
   worldMap?: CloudWorldMap | null
   /**
    * Noise to share between nodes, drawn at once if it is not yet. Left out, the node makes and owns its

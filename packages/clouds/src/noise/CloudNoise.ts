@@ -123,7 +123,7 @@ const channelsAt = (channels: readonly NoiseChannel[], first: number, p: Vec3): 
  */
 export type NoiseFunction = (place: Vec3) => Vec4
 
-/** Noise of one's own in place of a {@link CloudNoise}'s. */
+/** Noise of one's own in place of a {@link CloudNoise}'s; what is left out is its own. */
 export interface CloudNoiseOptions {
   /**
    * Weather of single clouds: cumulus, stratocumulus, cumulonimbus and cirrus, as `weatherWeights` mixes them.

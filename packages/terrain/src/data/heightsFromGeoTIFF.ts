@@ -32,7 +32,7 @@ export interface GeoTIFFHeightsOptions extends Pick<
    * Easting and northing of the world's origin, for a flat world and a file of metres; default the middle of what is read [m].
    */
   origin?: [easting: number, northing: number]
-  /** Gives up reading. */
+  /** Signal that gives up reading when it is aborted. */
   signal?: AbortSignal
 }
 
