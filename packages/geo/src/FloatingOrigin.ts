@@ -2,6 +2,7 @@ import { EventDispatcher, Matrix4, Vector3 } from 'three'
 import type { Object3D } from 'three'
 import { checkMatrix, checkOptions, checkPositive, checkVector, fail } from './check'
 
+/** Options of {@link FloatingOrigin}. */
 export interface FloatingOriginOptions {
   /** World units to ECEF in metres at the start; identity (the world is ECEF) if left out. Copied. */
   worldToECEF?: Matrix4
@@ -9,6 +10,7 @@ export interface FloatingOriginOptions {
   threshold?: number
 }
 
+/** Events of {@link FloatingOrigin}. */
 export interface FloatingOriginEventMap {
   /** Fired after a rebase: what stands at `offset` in the old world frame is at the origin in the new one. */
   rebase: { offset: Vector3 }

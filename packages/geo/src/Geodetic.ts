@@ -2,8 +2,11 @@ import { checkPlace } from './check'
 
 /** A place by longitude [degrees], latitude [degrees] and height [m]; `height` is 0 if left out. */
 export interface GeodeticLike {
+  /** East of the prime meridian, any finite value [degrees]. */
   readonly longitude: number
+  /** Geodetic, positive to the north, in [−90, 90] [degrees]. */
   readonly latitude: number
+  /** Above the ellipsoid, default 0 [m]. */
   readonly height?: number
 }
 

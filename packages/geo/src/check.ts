@@ -19,22 +19,26 @@ export function fail(where: string, rule: string, ...value: [unknown?]): never {
   throw new Error(`${where}: ${rule}${got}`)
 }
 
+/** @throws If it is no finite number. */
 export function checkFinite(where: string, name: string, value: number): void {
   if (!Number.isFinite(value)) fail(where, `${name} must be a finite number`, value)
 }
 
+/** @throws If it is no finite number > 0. */
 export function checkPositive(where: string, name: string, value: number): void {
   if (!(Number.isFinite(value) && value > 0)) {
     fail(where, `${name} must be positive and finite`, value)
   }
 }
 
+/** @throws If it is no finite number ≥ 0. */
 export function checkNonNegative(where: string, name: string, value: number): void {
   if (!(Number.isFinite(value) && value >= 0)) {
     fail(where, `${name} must be finite and ≥ 0`, value)
   }
 }
 
+/** @throws If it is neither true nor false. */
 export function checkBoolean(where: string, name: string, value: boolean): void {
   if (typeof value !== 'boolean') fail(where, `${name} must be true or false`, value)
 }
@@ -46,6 +50,7 @@ export function checkChoice<T>(where: string, name: string, value: T, choices: r
   fail(where, `${name} must be ${texts.slice(0, -1).join(', ')} or ${texts.at(-1)}`, value)
 }
 
+/** @throws If it is outside [−90, 90] [°]. */
 export function checkLatitude(where: string, latitude: number): void {
   if (!(Number.isFinite(latitude) && Math.abs(latitude) <= 90)) {
     fail(where, 'latitude must be in [−90, 90]', latitude)
@@ -73,6 +78,7 @@ export function checkPlace(
   checkFinite(where, 'height', place.height ?? 0)
 }
 
+/** @throws If it is no vector of finite components. */
 export function checkVector(where: string, name: string, vector: XYZ): void {
   if (typeof vector !== 'object' || vector === null || !('x' in vector)) {
     fail(where, `${name} must be a Vector3`, vector)
@@ -82,12 +88,14 @@ export function checkVector(where: string, name: string, vector: XYZ): void {
   }
 }
 
+/** @throws If it is no vector of finite components, or zero. */
 export function checkDirection(where: string, name: string, direction: XYZ): void {
   checkVector(where, name, direction)
   const { x, y, z } = direction
   if (!(x || y || z)) fail(where, `${name} must not be zero`, direction)
 }
 
+/** @throws If it is no valid date. */
 export function checkDate(where: string, date: Date): void {
   if (!(date instanceof Date) || Number.isNaN(date.getTime())) {
     fail(where, 'date must be a valid Date', date)

@@ -15,6 +15,7 @@ import { visibleDistance } from './horizon'
 /** Writing of the depth buffer: the renderer's `reversedDepthBuffer`, `logarithmicDepthBuffer` or neither. */
 export type DepthKind = 'standard' | 'reversed' | 'logarithmic'
 
+/** Options of {@link fitGlobeCamera}. */
 export interface FitGlobeCameraOptions {
   /** Default `Ellipsoid.WGS84`. */
   ellipsoid?: Ellipsoid

@@ -14,6 +14,7 @@ import { watchScene } from '../view/renderers'
 
 /** A small plane in the light of sky and ground, as shader nodes. */
 export interface SkyLitPlane {
+  /** Camera's view in the light of the probe's source. */
   readonly view: ViewNodes
   /** Position from the camera, in the mapped space [m]. */
   readonly offset: Vec3

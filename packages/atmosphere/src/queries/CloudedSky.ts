@@ -16,6 +16,7 @@ export interface CloudedPoint {
   direct: (altitude: number) => readonly number[]
   /** Irradiance of level planes at an altitude [m], facing up and down, by sky and ground. */
   diffuse: (altitude: number) => { up: readonly number[]; down: readonly number[] }
+  /** Albedo of the ground at the four wavelengths, in [0, 1]. */
   readonly groundAlbedo: readonly number[]
 }
 

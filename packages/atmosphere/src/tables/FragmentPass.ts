@@ -28,7 +28,9 @@ export function tableTarget(
 
 /** A shader with several outputs: `color` assigns the properties that `output` is a struct of. */
 export interface Outputs {
+  /** Colour of the material: building it assigns the outputs. */
   color: Vec4
+  /** Struct of the outputs. */
   output: Node
 }
 

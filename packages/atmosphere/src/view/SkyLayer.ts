@@ -14,6 +14,7 @@ export const MASKING_RATIO = 10_000
 
 /** View ray into the sky, as shader nodes. */
 export interface SkyRay extends Readonly<ViewRay> {
+  /** Uniforms and tables of the camera's view. */
   readonly view: ViewUniforms
   /** Unit length, in the mapped space. */
   readonly direction: Vec3
@@ -56,7 +57,9 @@ export interface ShadowedMedium {
 
 /** View ray to a point, with the part of the sky volumes up to it. */
 export interface PointRay extends LayerRay {
+  /** Distance to the point [m]. */
   readonly distance: Float
+  /** Look-up of the sky volumes up to it. */
   readonly segment: VolumeSegment
 }
 

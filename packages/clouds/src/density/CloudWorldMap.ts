@@ -12,10 +12,13 @@ import { mappedCoverage, type CoverMap, type MappedLayer, type MappedPlanet } fr
  * antimeridian then lies between them.
  */
 export interface MapBounds {
+  /** Longitude of the western edge. */
   readonly west: number
-  /** Geodetic latitude, in [−90, 90]. */
+  /** Geodetic latitude of the southern edge, in [−90, 90]. */
   readonly south: number
+  /** Longitude of the eastern edge. */
   readonly east: number
+  /** Geodetic latitude of the northern edge, in [−90, 90]. */
   readonly north: number
 }
 

@@ -6,7 +6,9 @@ import { checkedPrecipitation, type CloudPrecipitation } from './precipitation'
 
 /** Horizontal velocity of the air at a layer [m/s], towards east and north. */
 export interface CloudWind {
+  /** Speed towards the east [m/s]. */
   readonly east: number
+  /** Speed towards the north [m/s]. */
   readonly north: number
 }
 
@@ -56,6 +58,7 @@ export interface CloudLayerParameters {
    * cumulonimbus, cirrus. A layer of cumulonimbus alone is made of single storms, each with a tower.
    */
   readonly weatherWeights: readonly [number, number, number, number]
+  /** Wind that the layer drifts with [m/s]. */
   readonly wind: CloudWind
   /** Rain, snow or hail from it; seen if `clouds` has a `precipitation`. Null, the default, for nothing. */
   readonly precipitation: CloudPrecipitation | null

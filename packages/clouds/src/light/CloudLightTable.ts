@@ -29,6 +29,7 @@ export interface CloudLight {
   readonly oneMinusAsymmetry: UniformNode<'float', number>
   /** χ′₂, second Legendre coefficient of the delta-scaled phase function. */
   readonly secondMoment: UniformNode<'float', number>
+  /** The lobes of the phase function: see {@link CloudPhaseParameters}. */
   readonly forwardAsymmetry: UniformNode<'float', number>
   readonly backwardAsymmetry: UniformNode<'float', number>
   readonly forwardShare: UniformNode<'float', number>

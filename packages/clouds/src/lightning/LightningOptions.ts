@@ -29,6 +29,7 @@ export interface StrikeOptions {
 
 /** A flash that begins, or its thunder that arrives. */
 export interface LightningEvent {
+  /** To the ground or in the cloud. */
   kind: FlashKind
   /** Distance of its nearest part from the camera [m]. */
   distance: number
@@ -40,6 +41,8 @@ export interface LightningEvent {
 
 /** Events of `Lightning`. */
 export interface LightningEventMap {
+  /** A flash begins. */
   strike: LightningEvent
+  /** Its thunder arrives at the camera. */
   thunder: LightningEvent
 }

@@ -26,11 +26,13 @@ export interface GridHeightsOptions {
   width: number
   /** Rows from north to south, ≥ 2. */
   height: number
-  /** Outer edges of the first and last columns [°], or as `units` says; east is more than west, by at most 360°. */
+  /** Outer edge of the first column [°], or as `units` says. */
   west: number
+  /** Outer edge of the last column [°], or as `units` says: more than `west`, by at most 360°. */
   east: number
-  /** Outer edges of the last and first rows [°], or as `units` says. */
+  /** Outer edge of the last row [°], or as `units` says. */
   south: number
+  /** Outer edge of the first row [°], or as `units` says. */
   north: number
   /** Units of the edges: `'degrees'`, the default, or for a flat world `'meters'`, to the east along +X and to the north along −Z. */
   units?: 'degrees' | 'meters'

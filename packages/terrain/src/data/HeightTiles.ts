@@ -33,8 +33,9 @@ import type { TileUrl } from './tileUrl'
 
 /** Options of {@link TerrariumTiles} and {@link TerrainRGBTiles}. */
 export interface HeightTilesOptions extends TileOptions {
-  /** Bounds of what is taken for a height, default −11,500 (Terrain-RGB −9,999) and 9,000: other pixels are holes [m]. */
+  /** Least number that is taken for a height, default −11,500 (Terrain-RGB −9,999): lower pixels are holes [m]. */
   lowest?: number
+  /** Greatest number that is taken for a height, default 9,000: higher pixels are holes [m]. */
   highest?: number
   /** Steepest slope that the data has, > 0, default 3: rise over run [–]. */
   steepest?: number

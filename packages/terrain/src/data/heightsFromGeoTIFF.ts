@@ -3,14 +3,19 @@ import { GridHeights, type GridHeightsOptions } from './GridHeights'
 
 /** Part of a `GeoTIFFImage` of the package geotiff that is used; others may stand in for it. */
 export interface GeoTIFFRaster {
+  /** Width [pixels]. */
   getWidth(): number
+  /** Height [pixels]. */
   getHeight(): number
   /** Least x and y, largest x and y, in units of the file. */
   getBoundingBox(): number[]
   /** Width and height of a pixel, of any sign, in units of the file. */
   getResolution(): number[]
+  /** Value of missing heights, by GDAL's tag; null for none. */
   getGDALNoData(): number | null
+  /** Values of the file's GeoKeys by name. */
   getGeoKeys(): Partial<Record<string, unknown>> | null
+  /** Values of some channels in a window (left, top, right, bottom), row by row from the top. */
   readRasters(options: {
     samples: number[]
     window: number[]

@@ -2,8 +2,11 @@ import { PermanentFailure } from './TileRequests'
 
 /** Pixels of a picture: RGBA, 8 bits each, row by row from the top. */
 export interface Pixels {
+  /** Pixels of a row. */
   readonly width: number
+  /** Number of rows. */
   readonly height: number
+  /** Four numbers of 0 to 255 for each pixel. */
   readonly data: ArrayLike<number>
 }
 

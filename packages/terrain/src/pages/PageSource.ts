@@ -7,8 +7,9 @@ export interface PageRequest {
   readonly face: number
   /** 0 for a whole face; each next level has half the size. */
   readonly level: number
-  /** Centre of the tile on the face, in (−1, 1), like `y`. */
+  /** Centre of the tile along the face's first axis, in (−1, 1). */
   readonly x: number
+  /** Centre along the second axis. */
   readonly y: number
   /** Number of heights along an edge. */
   readonly side: number

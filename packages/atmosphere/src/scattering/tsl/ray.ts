@@ -5,6 +5,7 @@ import type { Float } from '../../tsl-types'
 
 /** Everything that says how the air scatters: its parameters and the two tables. */
 export interface Air {
+  /** Parameters of the air. */
   uniforms: AtmosphereUniforms
   /** Optical depth to the top of the air. */
   transmittance: Table

@@ -22,7 +22,9 @@ export const RAYLEIGH_MOMENT_2 = 1 / 10
 
 /** Parts of the light that a march takes into account. */
 export interface LightParts {
+  /** Light straight from the source. */
   direct: boolean
+  /** Light that was scattered before, from the diffuse-light table. */
   diffuse: boolean
 }
 

@@ -7,6 +7,7 @@ export interface RayLimits {
   start: Float
   /** Distance from there to the ground or out of the air; 0 if the ray misses the air [m]. */
   length: Float
+  /** True if the ray meets the ground. */
   hitsGround: Bool
 }
 

@@ -1,8 +1,12 @@
 /** Gradient per wavelength and value of noise. */
 export interface Noise {
+  /** Gradient along X, per wavelength. */
   x: number
+  /** Gradient along Y. */
   y: number
+  /** Gradient along Z. */
   z: number
+  /** About ±0.6, at most ±1.5. */
   value: number
 }
 

@@ -13,10 +13,13 @@ import { GROUND_KINDS, type GroundKind } from './groundKinds'
 export interface GroundMaskOptions {
   /** Materials of red, green, blue and alpha; null for a channel that is not used. */
   materials: readonly (GroundKind | null)[]
-  /** Outer edges [°]; in a flat world, along X and −Z [m]. */
+  /** Western edge [°]; in a flat world along X [m]. */
   west: number
+  /** Eastern edge [°]; in a flat world along X [m]. */
   east: number
+  /** Southern edge [°]; in a flat world along −Z [m]. */
   south: number
+  /** Northern edge [°]; in a flat world along −Z [m]. */
   north: number
 }
 
