@@ -22,8 +22,16 @@ import type { GroundMaps } from './surface/maps/GroundMaps'
 import type { GroundMask } from './surface/maps/GroundMask'
 import { SeaMesh } from './surface/SeaMesh'
 import { terrainMaterial } from './surface/terrainMaterial'
-import { checkFixed, checkSource, DEFAULTS, SETTINGS, type TerrainOptions } from './TerrainOptions'
+import {
+  checkFixed,
+  checkSource,
+  DEFAULTS,
+  SETTING_NAMES,
+  type TerrainOptions,
+  type TerrainSetting
+} from './TerrainOptions'
 import { TerrainUniforms } from './TerrainUniforms'
+import type { TerrainHorizon } from './tiles/TerrainHorizon'
 import { figureOf, isFlat, poleOf, worldToGround, type Figure } from './tiles/cpu/figure'
 import { viewerOf } from './tiles/cpu/viewer'
 import { tileGrid } from './tiles/tileGrid'
@@ -61,21 +69,23 @@ const sample: HeightSample = { height: 0, gradient: new Vector3() }
  */
 export class Terrain extends SeaMesh {
   /** Shared, not owned. */
-  readonly atmosphere: Atmosphere
+  declare readonly atmosphere: Atmosphere
   /** Heights of the ground; shared, not owned. */
-  readonly source: HeightSource | PageSource
+  declare readonly source: HeightSource | PageSource
   /** Imagery of the ground; shared, not owned; null for procedural colours. */
-  readonly imagery: PageImages | null
+  declare readonly imagery: PageImages | null
   /** Texture maps of the ground's materials; shared, not owned; null for procedural ones. */
-  readonly maps: GroundMaps | null
+  declare readonly maps: GroundMaps | null
   /** Mask of the ground's materials; shared, not owned; null for none. */
-  readonly mask: GroundMask | null
+  declare readonly mask: GroundMask | null
+  /** Leaves out what ground hides; shared, not owned; null for none. */
+  declare readonly horizon: TerrainHorizon | null
   /** Cells along a tile's edge. */
-  readonly resolution: number
+  declare readonly resolution: number
   /** Distance at which a tile is split, in diagonals of it. */
-  readonly detail: number
+  declare readonly detail: number
   /** Most memory of pages on the GPU [MB]. */
-  readonly pageMemory: number
+  declare readonly pageMemory: number
   readonly #figure: Figure
   readonly #uniforms: TerrainUniforms
   readonly #tiles: PagedTiles
@@ -92,12 +102,10 @@ export class Terrain extends SeaMesh {
     checkAtmosphere('Terrain', atmosphere)
     checkSource('Terrain', source)
     const all = withDefaults('Terrain', DEFAULTS, options)
-    const { resolution, detail, pageMemory, imagery, maps, mask, horizon, ...settings } = all
     checkFixed('Terrain', all)
     const figure = figureOf(atmosphere)
     const uniforms = new TerrainUniforms(figure)
-    const bytes = 1e6 * pageMemory
-    const tiles = new PagedTiles(source, figure, resolution, detail, bytes, imagery, horizon)
+    const tiles = new PagedTiles(source, figure, all)
     const grain = grainTexture()
     const material = terrainMaterial(
       atmosphere,
@@ -105,25 +113,14 @@ export class Terrain extends SeaMesh {
       grain,
       uniforms,
       isFlat(figure) ? planeInShader : ellipsoidInShader,
-      resolution,
-      detail,
-      maps,
-      mask
+      all
     )
-    super(tileGrid(resolution, CAPACITY), material, uniforms)
-    this.atmosphere = atmosphere
+    super(tileGrid(all.resolution, CAPACITY), material, uniforms)
     this.#figure = figure
-    this.source = source
-    this.imagery = imagery
-    this.maps = maps
-    this.mask = mask
-    this.resolution = resolution
-    this.detail = detail
-    this.pageMemory = pageMemory
     this.#uniforms = uniforms
     this.#tiles = tiles
     this.#grain = grain
-    this.set(settings)
+    Object.assign(this, { atmosphere, source }, all)
     this.name = 'Terrain'
     // Tiles are culled one by one, and the matrix follows the camera.
     this.frustumCulled = false
@@ -135,8 +132,8 @@ export class Terrain extends SeaMesh {
    *
    * @throws If one is unknown or out of its range; then nothing has changed.
    */
-  set(settings: Pick<TerrainOptions, (typeof SETTINGS)[number]>): this {
-    return setOptions('Terrain', this, settings, ...SETTINGS)
+  set(settings: Pick<TerrainOptions, TerrainSetting>): this {
+    return setOptions('Terrain', this, settings, ...SETTING_NAMES)
   }
 
   /** Reflectance of white in the imagery, ≥ 0 [–]. */
@@ -273,12 +270,17 @@ export class Terrain extends SeaMesh {
     positionECEF.copy(positionWorld).applyMatrix4(fromWorld)
     const ground = this.#heightAtSubpoint(figure.footPoint(positionECEF, subpoint))
     const above = figure.heightAt(positionECEF) - ground
-    const shadowDistance = this.castShadow ? this.#shadowDistance : 0
-    const clearance = Math.max(above, LEAST_CLEARANCE)
-    const lowest = Math.max(this.source.lowest, this.seaLevel)
-    const where = [camera, positionECEF, clearance, lowest, fromWorld, figure] as const
-    const isAbove = above >= LEAST_CLEARANCE
-    const viewer = viewerOf(...where, shadowDistance, this.seaLevel, isAbove)
+    const viewer = viewerOf(
+      camera,
+      positionECEF,
+      Math.max(above, LEAST_CLEARANCE),
+      Math.max(this.source.lowest, this.seaLevel),
+      fromWorld,
+      figure,
+      this.castShadow ? this.#shadowDistance : 0,
+      this.seaLevel,
+      above >= LEAST_CLEARANCE
+    )
     this.#uniforms.update(viewer, ground, poleOf(this.atmosphere, pole))
     this.#tiles.update(renderer, viewer, most)
     const { tree, selection } = this.#tiles
@@ -288,9 +290,7 @@ export class Terrain extends SeaMesh {
     this.#uniforms.referenceECEF(reference)
     this.maps?.update(renderer)
     this.mask?.update(figure, reference)
-    writeTiles(this.geometry, selection.tiles, positionECEF, reference, ground, level =>
-      tree.range(level)
-    )
+    writeTiles(this.geometry, selection.tiles, positionECEF, reference, ground, tree.ranges)
     // The ground's axes at the camera.
     matrix.copy(fromWorld).invert().decompose(subpoint, quaternion, scale)
     this.matrixWorld.compose(positionWorld, quaternion, scale)

@@ -6,7 +6,7 @@ import type { PageImages } from './pages/PageImages'
 import type { GroundMaps } from './surface/maps/GroundMaps'
 import type { GroundMask } from './surface/maps/GroundMask'
 import type { TerrainHorizon } from './tiles/TerrainHorizon'
-import { isPageSource, type PageSource } from './pages/PageSource'
+import type { PageSource } from './pages/PageSource'
 
 /** Options of `Terrain`. */
 export interface TerrainOptions {
@@ -40,63 +40,65 @@ export interface TerrainOptions {
   pagesPerFrame?: number
 }
 
-/** Options that may change later. */
-export const SETTINGS = [
-  'imageAlbedo',
-  'seaLevel',
-  'windSpeed',
-  'waveTime',
-  'shadowDistance',
-  'camera',
-  'pagesPerFrame'
-] as const
-
-/** Options that are left out. */
-export const DEFAULTS: Required<TerrainOptions> = {
-  resolution: 12,
-  detail: 1.2,
-  imagery: null,
+/** Options that may change later, and their defaults. */
+const SETTINGS = {
   imageAlbedo: 1,
-  maps: null,
-  mask: null,
-  horizon: null,
   seaLevel: 0,
   windSpeed: 7,
   waveTime: 0,
   shadowDistance: 3000,
   camera: null,
-  pageMemory: 190,
   pagesPerFrame: 1
 }
 
+export type TerrainSetting = keyof typeof SETTINGS
+export const SETTING_NAMES = Object.keys(SETTINGS) as TerrainSetting[]
+
+/** Options that cannot change later. */
+export type FixedOptions = Required<Omit<TerrainOptions, TerrainSetting>>
+
+/** Options that are left out. */
+export const DEFAULTS: Required<TerrainOptions> = {
+  ...SETTINGS,
+  resolution: 12,
+  detail: 1.2,
+  imagery: null,
+  maps: null,
+  mask: null,
+  horizon: null,
+  pageMemory: 190
+}
+
+/** Options that are objects: a property that each has, and what it must be. */
+const OBJECTS = [
+  ['imagery', 'imageOf', 'ImageTiles, PageImages'],
+  ['maps', 'layers', 'GroundMaps'],
+  ['mask', 'materials', 'a GroundMask'],
+  ['horizon', 'cull', 'a TerrainHorizon']
+] as const
+
 /** @throws If it is no source of heights. */
 export function checkSource(where: string, source: HeightSource | PageSource): void {
-  const isSource =
-    typeof source?.sampleAt === 'function' &&
-    typeof source.variation === 'function' &&
-    (isPageSource(source) ? typeof source.loadHeights : typeof source.sample) === 'function'
-  if (!isSource) fail(where, 'source must be a HeightSource', source)
+  const given = Object(source) as Record<string, unknown>
+  const methods = ['sampleAt', 'variation', 'loadHeights' in given ? 'loadHeights' : 'sample']
+  if (methods.some(name => typeof given[name] !== 'function')) {
+    fail(where, 'source must be a HeightSource', source)
+  }
   checkFinite(where, 'source.lowest', source.lowest)
   checkFinite(where, 'source.highest', source.highest)
 }
 
 /** @throws If an option that cannot change later is out of its range. */
-export function checkFixed(
-  where: string,
-  { resolution, detail, pageMemory, imagery, maps, mask, horizon }: Required<TerrainOptions>
-): void {
+export function checkFixed(where: string, options: FixedOptions): void {
+  const { resolution, detail, pageMemory } = options
   checkRange(where, 'resolution', resolution, 4, 128)
   if (resolution % 2 !== 0) fail(where, 'resolution must be even', resolution)
   checkRange(where, 'detail', detail, 1.2, 4)
   checkRange(where, 'pageMemory', pageMemory, 4, 1000)
-  if (maps !== null && !Array.isArray(maps?.layers))
-    fail(where, 'maps must be GroundMaps or null', maps)
-  if (mask !== null && !Array.isArray(mask?.materials))
-    fail(where, 'mask must be a GroundMask or null', mask)
-  if (horizon !== null && typeof horizon?.cull !== 'function')
-    fail(where, 'horizon must be a TerrainHorizon or null', horizon)
-  if (imagery === null) return
-  const isImagery =
-    typeof imagery?.imageOf === 'function' && typeof imagery.loadImage === 'function'
-  if (!isImagery) fail(where, 'imagery must be ImageTiles, PageImages or null', imagery)
+  for (const [name, property, kind] of OBJECTS) {
+    const value: object | null = options[name]
+    if (value !== null && !(property in Object(value))) {
+      fail(where, `${name} must be ${kind} or null`, value)
+    }
+  }
 }

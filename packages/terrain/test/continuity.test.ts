@@ -82,7 +82,7 @@ function changes(from: Place, to: Place): { count: number; excess: number } {
   const check = (tiles: Map<string, Tile>, others: Map<string, Tile>, viewer: Viewer): void => {
     for (const [key, tile] of tiles) {
       if (others.has(key) || tile.parent === null || !others.has(keyOf(tile.parent))) continue
-      const range = tree.range(tile.level)
+      const range = tree.ranges[tile.level]
       const missing = (1 - nearest(tile, viewer) / range) / (1 - morphStart(DETAIL))
       count++
       excess = Math.max(excess, missing - step / range / (1 - morphStart(DETAIL)))

@@ -7,10 +7,11 @@ import { PageBaker } from '../src/pages/PageBaker'
 import { PagedTiles } from '../src/pages/PagedTiles'
 import type { PageSource } from '../src/pages/PageSource'
 import type { Tile } from '../src/tiles/Tile'
+import { DEFAULTS } from '../src/TerrainOptions'
 import { viewerOf, type Viewer } from '../src/tiles/cpu/viewer'
 
 const earth = Ellipsoid.WGS84
-const RESOLUTION = 4
+const options = { ...DEFAULTS, resolution: 4, detail: 1.5 }
 
 /** Tile and height that each place of the atlas was last drawn with. */
 const atlas = new Map<number, { tile: Tile; height: number }>()
@@ -142,7 +143,7 @@ it('draws no stale page in fast flights, however late heights come, and ends wit
   atlas.clear()
   const random = randomNumbers(7)
   const loader = new SlowLoader(random, 90)
-  const tiles = new PagedTiles(loader, earth, RESOLUTION, 1.5, 1)
+  const tiles = new PagedTiles(loader, earth, { ...options, pageMemory: 1e-6 })
   const renderer = { isRenderer: true, info: { frame: 0 } }
   const next = flight(random, 40)
   let viewer = next(0)
@@ -172,7 +173,7 @@ it('keeps its memory within bounds in half an hour of flying', async () => {
   atlas.clear()
   const random = randomNumbers(19)
   const loader = new SlowLoader(random, 2)
-  const tiles = new PagedTiles(loader, earth, RESOLUTION, 1.5, 0.25e6)
+  const tiles = new PagedTiles(loader, earth, { ...options, pageMemory: 0.25 })
   const renderer = { isRenderer: true, info: { frame: 0 } }
   // A second in a frame: each comes to as much that is new as sixty would.
   const minutes = 30
@@ -202,12 +203,11 @@ it.each([200, 64, 20])(
   'keeps pages within %i MB, as many as a view needs where there is room',
   megabytes => {
     for (const resolution of [12, 16, 24]) {
-      const { atlas: pages } = new HeightPages(
-        new SlowLoader(Math.random, 1),
-        earth,
+      const { atlas: pages } = new HeightPages(new SlowLoader(Math.random, 1), earth, {
+        ...DEFAULTS,
         resolution,
-        1e6 * megabytes
-      )
+        pageMemory: megabytes
+      })
       const { heights, surface } = pages
       const bytes = [heights, surface].reduce(
         (sum, { width, height }) => sum + 8 * width * height,

@@ -6,6 +6,7 @@ import { HeightPages } from '../src/pages/HeightPages'
 import { PageBaker } from '../src/pages/PageBaker'
 import { PagedTiles } from '../src/pages/PagedTiles'
 import type { PageSource } from '../src/pages/PageSource'
+import { DEFAULTS } from '../src/TerrainOptions'
 import type { Tile } from '../src/tiles/Tile'
 import { TileTree } from '../src/tiles/TileTree'
 import { viewerOf, type Viewer } from '../src/tiles/cpu/viewer'
@@ -39,7 +40,7 @@ const flat = (side: number, height: number): Float32Array =>
   new Float32Array(side ** 2).fill(height)
 
 const pagesOf = (source: PageSource): { pages: HeightPages; tree: TileTree } => ({
-  pages: new HeightPages(source, earth, RESOLUTION, 1e6),
+  pages: new HeightPages(source, earth, { ...DEFAULTS, resolution: RESOLUTION, pageMemory: 1 }),
   tree: new TileTree(earth, source, 12, 1.5)
 })
 
@@ -170,12 +171,17 @@ const failing: PageSource['loadHeights'] = ({ side, level }) =>
 const complete: PageSource['loadHeights'] = ({ side }) => flat(side, 700)
 
 it.each([
-  ['heights fail', failing, 100e6],
-  ['there is no room', complete, 1]
+  ['heights fail', failing, 100],
+  ['there is no room', complete, 1e-6]
 ])(
   'draws few pages in a frame, and fades them in, once no more come: %s',
-  async (_, load, bytes) => {
-    const tiles = new PagedTiles(sourceOf(load), earth, RESOLUTION, 1.5, bytes)
+  async (_, load, pageMemory) => {
+    const tiles = new PagedTiles(sourceOf(load), earth, {
+      ...DEFAULTS,
+      resolution: RESOLUTION,
+      detail: 1.5,
+      pageMemory
+    })
     const renderer = rendererOf()
     const update = async (viewer: Viewer): Promise<number> => {
       drawn.length = 0

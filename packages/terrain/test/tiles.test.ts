@@ -9,6 +9,7 @@ import { morphStart } from '../src/tiles/tsl/tileVertex'
 import { distanceTo, noTiles, TileTree } from '../src/tiles/TileTree'
 import type { Tile } from '../src/tiles/Tile'
 import { CAPACITY, PagedTiles } from '../src/pages/PagedTiles'
+import { DEFAULTS } from '../src/TerrainOptions'
 
 const earth = Ellipsoid.WGS84
 const source = new MountainHeights({ seed: 1 })
@@ -95,7 +96,7 @@ it('lets neighbours meet: the finer one wholly morphed, the coarser one not at a
       const tiles = select(viewer, 1e5, tree)
       /** Tiles by their point nearest to an edge's middle. */
       const morphAt = (tile: Tile, point: Vector3): number => {
-        const part = point.distanceTo(viewer.datumPoint) / tree.range(tile.level)
+        const part = point.distanceTo(viewer.datumPoint) / tree.ranges[tile.level]
         const start = morphStart(DETAIL)
         return Math.min(Math.max((part - start) / (1 - start), 0), 1)
       }
@@ -184,7 +185,11 @@ it.each([
     camera.rotateX(-0.14)
     camera.updateMatrixWorld()
     const viewer = viewerOf(camera, camera.position, 1.7, 0, new Matrix4(), earth, 3000, 0)
-    const { tree, pages } = new PagedTiles(mountains, earth, resolution, DETAIL, 190e6)
+    const { tree, pages } = new PagedTiles(mountains, earth, {
+      ...DEFAULTS,
+      resolution,
+      detail: DETAIL
+    })
     const selection = noTiles()
     let count = 0
     do {

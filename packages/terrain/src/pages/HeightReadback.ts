@@ -1,8 +1,8 @@
 import { FloatType, NearestFilter, RenderTarget, RGBAFormat } from 'three'
-import { Fn, attribute, float, ivec2, texture, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, attribute, float, ivec2, positionGeometry, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { Tile } from '../tiles/Tile'
-import type { Float, Vec4 } from '../tsl-types'
+import type { Float, Vec2, Vec4 } from '../tsl-types'
 import type { PageAtlas } from './PageAtlas'
 
 /** Texels of a row are a multiple of this: WebGPU copies rows of so many bytes. */
@@ -13,6 +13,8 @@ export class HeightReadback {
   readonly target: RenderTarget
   /** Four heights of a page. */
   readonly output: Vec4
+  /** Place of a vertex of the page's row in the target, in [0, 1]. */
+  readonly place: Vec2
   readonly #count: number
   /** Tiles of the pages that wait. */
   #tiles: Tile[] = []
@@ -32,9 +34,10 @@ export class HeightReadback {
       magFilter: NearestFilter
     })
     this.target.texture.name = 'Welkin.Terrain.readback'
+    const slot = attribute('pageSlot', 'vec4') as unknown as Vec4
+    this.place = vec2(positionGeometry.x, slot.z.add(positionGeometry.y).div(rows))
     const atlas = texture(heights.texture) as unknown as { load(at: unknown): Vec4 }
     this.output = Fn(() => {
-      const slot = attribute('pageSlot', 'vec4') as unknown as Vec4
       const first = float(uv().x.mul(width).floor().mul(4)).toConst()
       const heightAt = (k: number): Float => {
         const i = first.add(k).min(this.#count - 1)
@@ -48,6 +51,7 @@ export class HeightReadback {
 
   /** Adds a tile whose page is in the next drawing. */
   add(tile: Tile): void {
+    tile.heights = null
     this.#tiles.push(tile)
   }
 

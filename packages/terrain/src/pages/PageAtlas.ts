@@ -9,6 +9,7 @@ import {
   UnsignedByteType
 } from 'three'
 import type { PixelFormat, TextureDataType } from 'three'
+import type { PageImages } from './PageImages'
 
 /** Longest side of a texture that every device has [texels]. */
 const LONGEST = 8192
@@ -39,19 +40,11 @@ function densityOf(resolution: number, bytes: number): number {
 /** Fewest pages: the six faces, and a tile with all that it is a part of, several times over. */
 const LEAST_PAGES = 64
 
-function target(name: string, width: number, height: number, type: TextureDataType): RenderTarget {
-  const isFloat = type === FloatType
-  const filter = isFloat ? NearestFilter : LinearFilter
-  const made = new RenderTarget(width, height, {
-    type,
-    format: (isFloat ? RGFormat : RGBAFormat) as PixelFormat,
-    depthBuffer: false,
-    minFilter: filter as typeof NearestFilter,
-    magFilter: filter as typeof NearestFilter
-  })
-  made.texture.name = name
-  made.scissorTest = true
-  return made
+/** Options of a terrain that its textures depend on. */
+interface AtlasOptions {
+  readonly resolution: number
+  readonly pageMemory: number
+  readonly imagery: PageImages | null
 }
 
 /** Textures with a fixed number of pages: a tile's heights for vertices, slopes and patches for pixels, and pictures if there are any. */
@@ -75,35 +68,36 @@ export class PageAtlas {
   /** Colours of pictures for pixels, sRGB, RGBA of 8 bits; null without any. */
   readonly images: RenderTarget | null
 
-  /**
-   * @param resolution - Cells along a tile's edge.
-   * @param bytes - Most memory that all may take; they take that of `LEAST_PAGES` at least.
-   */
-  constructor(resolution: number, bytes: number, hasImages = false) {
+  /** Textures for `pageMemory`, or for `LEAST_PAGES` if they take more. */
+  constructor({ resolution, pageMemory, imagery }: AtlasOptions) {
+    const bytes = 1e6 * pageMemory
     this.heightSide = resolution + 1
     this.density = densityOf(resolution, bytes)
     this.surfaceSide = this.density * resolution + 1
     const most = Math.floor(LONGEST / this.surfaceSide)
-    const imageBytes = hasImages ? IMAGE_BYTES * this.surfaceSide ** 2 : 0
+    const imageBytes = imagery === null ? 0 : IMAGE_BYTES * this.surfaceSide ** 2
     const bytesPerPage = bytesOfPage(resolution, this.density) + imageBytes
     const wanted = Math.max(Math.floor(bytes / bytesPerPage), LEAST_PAGES)
     this.columns = Math.min(Math.ceil(Math.sqrt(wanted)), most)
     const rows = Math.min(Math.floor(wanted / this.columns), most)
     this.capacity = this.columns * rows
     this.bytes = this.capacity * bytesPerPage
-    const pages = (name: string, side: number, type: TextureDataType): RenderTarget =>
-      target(`Welkin.Terrain.${name}`, this.columns * side, rows * side, type)
+    const pages = (name: string, side: number, type: TextureDataType): RenderTarget => {
+      const isFloat = type === FloatType
+      const filter = isFloat ? NearestFilter : LinearFilter
+      const target = new RenderTarget(this.columns * side, rows * side, {
+        type,
+        format: (isFloat ? RGFormat : RGBAFormat) as PixelFormat,
+        depthBuffer: false,
+        minFilter: filter as typeof NearestFilter,
+        magFilter: filter as typeof NearestFilter
+      })
+      target.texture.name = `Welkin.Terrain.${name}`
+      return target
+    }
     this.heights = pages('heights', this.heightSide, FloatType)
     this.surface = pages('surface', this.surfaceSide, HalfFloatType)
-    this.images = hasImages ? pages('images', this.surfaceSide, UnsignedByteType) : null
-  }
-
-  /** Sets viewport and scissor of a render target to one page. */
-  aim(drawn: RenderTarget, slot: number): void {
-    const side = drawn.width / this.columns
-    const x = (slot % this.columns) * side
-    const y = Math.floor(slot / this.columns) * side
-    for (const box of [drawn.viewport, drawn.scissor]) box.set(x, y, side, side)
+    this.images = imagery && pages('images', this.surfaceSide, UnsignedByteType)
   }
 
   dispose(): void {

@@ -1,15 +1,13 @@
-import { DataTexture, FloatType, NearestFilter, RedFormat, Vector3 } from 'three'
-import { FragmentPass } from '@welkin/atmosphere'
+import { DataTexture, FloatType, NearestFilter, RedFormat } from 'three'
 import { uniform } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
-import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import { faceAxes } from '../tiles/cpu/cubeSphere'
 import { cubeToFigure, isFlat, type Figure } from '../tiles/cpu/figure'
 import type { Tile } from '../tiles/Tile'
 import { ellipsoidInShader, planeInShader } from '../tiles/tsl/figure'
 import type { PageAtlas } from './PageAtlas'
-import type { TerrainHorizon } from '../tiles/TerrainHorizon'
+import type { FixedOptions } from '../TerrainOptions'
 import type { HeightReadback } from './HeightReadback'
 import { MOST, PageQuads } from './PageQuads'
 import { isPageSource, type PageRequest, type PageSource } from './PageSource'
@@ -22,9 +20,6 @@ import {
   type PageUniforms
 } from './tsl/pageOutput'
 
-const reference = new Vector3()
-const center = new Vector3()
-
 /** Largest step between heights of a page with so many steps along an edge [m]. */
 export const spacingOf = ({ extent }: Tile, { maximumRadius }: Figure, steps: number): number =>
   (2 * extent * maximumRadius) / steps
@@ -32,21 +27,22 @@ export const spacingOf = ({ extent }: Tile, { maximumRadius }: Figure, steps: nu
 /** Draws pages, many at once, in two passes. */
 export class PageBaker {
   readonly #quads: PageQuads
+  /** Cells along a tile's edge. */
+  readonly #resolution: number
   /** Read-back of heights to the CPU; null if nobody asks for them. */
   readonly #readback: HeightReadback | null
   /** Heights that were loaded, of one page; null if they come from a function. */
   readonly #loaded: DataTexture | null = null
-  /** Colours of one page, and the pass that draws them; null without pictures. */
-  readonly #image: { texture: DataTexture; pass: FragmentPass } | null = null
+  /** Colours of one page, and what draws them; null without pictures. */
+  readonly #image: { texture: DataTexture; quads: PageQuads } | null = null
 
   constructor(
     readonly source: HeightSource | PageSource,
     readonly figure: Figure,
     readonly atlas: PageAtlas,
-    /** Cells along a tile's edge. */
-    readonly resolution: number,
-    horizon: TerrainHorizon | null = null
+    { resolution, horizon }: FixedOptions
   ) {
+    this.#resolution = resolution
     const { heights, surface, heightSide, surfaceSide, density } = atlas
     const quads = (this.#quads = new PageQuads(atlas))
     const tile = {
@@ -54,13 +50,14 @@ export class PageBaker {
       radii: uniform(figure.radii),
       seed: uniform(source.seed ?? 0),
       figure: isFlat(figure) ? planeInShader : ellipsoidInShader
-    } as unknown as PageUniforms
+    } as PageUniforms
     const side = surfaceSide + 2
     if (atlas.images !== null) {
       const texture = new DataTexture(new Uint8ClampedArray(4 * side ** 2), side, side)
       texture.name = 'Welkin.Terrain.image'
-      const pass = new FragmentPass('Welkin.Terrain.images', imageOf(texture, surfaceSide))
-      this.#image = { texture, pass }
+      const images = new PageQuads(atlas)
+      images.addPass('images', imageOf(texture, surfaceSide), atlas.images)
+      this.#image = { texture, quads: images }
     }
     if (isPageSource(source)) {
       const texture = new DataTexture(new Float32Array(side ** 2), side, side, RedFormat, FloatType)
@@ -74,12 +71,13 @@ export class PageBaker {
       quads.addPass('surface', surfaceOf(source, tile, surfaceSide, density), surface)
     }
     const readback = (this.#readback = horizon?.readback(atlas, MOST) ?? null)
-    if (readback !== null) quads.addPass('readback', readback.output, readback.target, true)
+    if (readback !== null)
+      quads.addPass('readback', readback.output, readback.target, readback.place)
   }
 
   /** Heights to load for a tile. */
   request(tile: Tile): PageRequest {
-    const steps = this.atlas.density * this.resolution
+    const steps = this.atlas.density * this.#resolution
     const { face, level, x, y, extent } = tile
     const { first, second } = faceAxes(face)
     const { figure } = this
@@ -105,10 +103,7 @@ export class PageBaker {
    * @param heights - Loaded heights, as many as `request` asked for; null for a source that is a function.
    */
   bake(renderer: Renderer, tile: Tile, slot: number, heights: Float32Array | null = null): void {
-    reference.copy(tile.center).divideScalar(REFERENCE_STEP).round()
-    center.copy(tile.center).addScaledVector(reference, -REFERENCE_STEP)
-    const shortest = 2 * spacingOf(tile, this.figure, this.resolution)
-    this.#quads.add(tile, slot, reference, center, shortest)
+    this.#quads.add(tile, slot, 2 * spacingOf(tile, this.figure, this.#resolution))
     this.#readback?.add(tile)
     if (this.#loaded !== null && heights !== null) {
       ;(this.#loaded.image.data as Float32Array).set(heights)
@@ -124,16 +119,16 @@ export class PageBaker {
   }
 
   /** Draws the colours of a page, as many as `request` asks heights for; the renderer is left as it was. */
-  bakeImage(renderer: Renderer, slot: number, colors: Uint8ClampedArray): void {
-    const { texture, pass } = this.#image!
+  bakeImage(renderer: Renderer, tile: Tile, slot: number, colors: Uint8ClampedArray): void {
+    const { texture, quads } = this.#image!
     ;(texture.image.data as Uint8ClampedArray).set(colors)
     texture.needsUpdate = true
-    this.atlas.aim(this.atlas.images!, slot)
-    pass.render(renderer, this.atlas.images!)
+    quads.add(tile, slot, 0)
+    quads.draw(renderer)
   }
 
   dispose(): void {
-    this.#image?.pass.dispose()
+    this.#image?.quads.dispose()
     this.#image?.texture.dispose()
     this.#quads.dispose()
     this.#readback?.dispose()

@@ -8,19 +8,24 @@ import {
   NoBlending,
   OrthographicCamera
 } from 'three'
-import type { RenderTarget, Vector3 } from 'three'
+import { Vector3, type RenderTarget } from 'three'
 import { attribute, positionGeometry, varying, vec2, vec4 } from 'three/tsl'
 import { NodeMaterial, RendererUtils } from 'three/webgpu'
 import type { Renderer } from 'three/webgpu'
+import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import type { Tile } from '../tiles/Tile'
-import type { Float, Vec3, Vec4 } from '../tsl-types'
+import type { Vec2, Vec4 } from '../tsl-types'
 import type { PageAtlas } from './PageAtlas'
+import type { PageUniforms } from './tsl/pageOutput'
 
 /** Most pages of one drawing. */
 export const MOST = 64
 
 /** Attributes of an instance, four numbers each. */
 const ATTRIBUTES = ['pageCube', 'pageCenter', 'pageReference', 'pageSlot'] as const
+
+const reference = new Vector3()
+const point = new Vector3()
 
 /** An instance's numbers as they are: a mean of three equal ones might be another. */
 function flat(name: (typeof ATTRIBUTES)[number]): Vec4 {
@@ -36,22 +41,25 @@ export class PageQuads {
   readonly #camera = new OrthographicCamera()
   readonly #meshes: { mesh: Mesh; target: RenderTarget }[] = []
   readonly #columns: number
-  readonly #rows: number
+  readonly #place: Vec2
   #count = 0
 
-  /** Tile of a pixel's page, see `PageUniforms`. */
-  readonly tile = {
-    cube: flat('pageCube').xyz as Vec3,
-    face: flat('pageCube').w as Float,
-    center: flat('pageCenter').xyz as Vec3,
-    extent: flat('pageCenter').w as Float,
-    reference: flat('pageReference').xyz as Vec3,
-    shortest: flat('pageReference').w as Float
-  }
+  /** Tile of a pixel's page. */
+  readonly tile: Omit<PageUniforms, 'radii' | 'figure' | 'seed'>
 
   constructor({ columns, capacity }: PageAtlas) {
     this.#columns = columns
-    this.#rows = capacity / columns
+    const corner = attribute<'vec4'>('pageSlot', 'vec4').xy.add(positionGeometry.xy)
+    this.#place = corner.div(vec2(columns, capacity / columns))
+    const [cube, center, reference] = ATTRIBUTES.map(flat)
+    this.tile = {
+      cube: cube.xyz,
+      face: cube.w,
+      center: center.xyz,
+      extent: center.w,
+      reference: reference.xyz,
+      shortest: reference.w
+    }
     const geometry = this.#geometry
     geometry.name = 'Welkin.Terrain.pages'
     const corners = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0])
@@ -70,13 +78,9 @@ export class PageQuads {
    * Adds a shader to draw pages with.
    *
    * @param output - Value of a texel.
-   * @param isList - True if each page has a row of the target, and not its place in the atlas.
+   * @param at - Place of a vertex in the target, in [0, 1]: that of its page in the atlas.
    */
-  addPass(name: string, output: Vec4, target: RenderTarget, isList = false): void {
-    const { x, y, z: row } = attribute<'vec4'>('pageSlot', 'vec4')
-    const place = isList ? vec2(0, row) : vec2(x, y)
-    const size = isList ? vec2(1, MOST) : vec2(this.#columns, this.#rows)
-    const at = place.add(positionGeometry.xy).div(size)
+  addPass(name: string, output: Vec4, target: RenderTarget, at: Vec2 = this.#place): void {
     const material = Object.assign(new NodeMaterial(), {
       name: `Welkin.Terrain.${name}`,
       blending: NoBlending,
@@ -102,16 +106,16 @@ export class PageQuads {
   /**
    * Adds a page to the next drawing.
    *
-   * @param reference - Point near the tile's centre in whole multiples of 256 m [256 m].
-   * @param center - Reference to centre [m].
    * @param shortest - Shortest wavelength that vertices show [m].
    */
-  add(tile: Tile, slot: number, reference: Vector3, center: Vector3, shortest: number): void {
+  add(tile: Tile, slot: number, shortest: number): void {
     const row = this.#count++
     const n = 4 * row
     const [cubes, centers, references, slots] = this.#attributes.map(({ array }) => array)
     tile.cube.toArray(cubes, n)
     cubes[n + 3] = tile.face
+    reference.copy(tile.center).divideScalar(REFERENCE_STEP).round()
+    const center = point.copy(tile.center).addScaledVector(reference, -REFERENCE_STEP)
     center.toArray(centers, n)
     centers[n + 3] = tile.extent
     reference.toArray(references, n)
@@ -130,9 +134,6 @@ export class PageQuads {
     const state = RendererUtils.resetRendererState(renderer, {} as never)
     renderer.autoClear = false
     for (const { mesh, target } of this.#meshes) {
-      for (const box of [target.viewport, target.scissor]) {
-        box.set(0, 0, target.width, target.height)
-      }
       renderer.setRenderTarget(target)
       renderer.render(mesh, this.#camera)
     }

@@ -5,7 +5,7 @@ import type { Viewer } from '../tiles/cpu/viewer'
 import type { TerrainHorizon } from '../tiles/TerrainHorizon'
 import { noTiles, TileTree } from '../tiles/TileTree'
 import { HeightPages } from './HeightPages'
-import type { PageImages } from './PageImages'
+import type { FixedOptions } from '../TerrainOptions'
 import type { PageSource } from './PageSource'
 
 /** Most tiles in a drawing. */
@@ -38,24 +38,15 @@ export class PagedTiles {
   #frame = -1
   #pagesLeft = 0
 
-  /**
-   * @param resolution - Cells along a tile's edge.
-   * @param detail - As of `TileTree`.
-   * @param bytes - Most memory of pages.
-   */
-  constructor(
-    source: HeightSource | PageSource,
-    figure: Figure,
-    resolution: number,
-    detail: number,
-    bytes: number,
-    images: PageImages | null = null,
-    readonly horizon: TerrainHorizon | null = null
-  ) {
+  readonly #horizon: TerrainHorizon | null
+
+  constructor(source: HeightSource | PageSource, figure: Figure, options: FixedOptions) {
+    const { resolution, detail, horizon } = options
     const cells = (2 * figure.maximumRadius) / resolution / FINEST_CELL
     const finestLevel = Math.max(Math.ceil(Math.log2(cells)), 0)
     this.tree = new TileTree(figure, source, finestLevel, detail)
-    this.pages = new HeightPages(source, figure, resolution, bytes, images, horizon)
+    this.pages = new HeightPages(source, figure, options)
+    this.#horizon = horizon
   }
 
   /**
@@ -86,7 +77,7 @@ export class PagedTiles {
     const isStuck = left > 0 && drawn === 0 && selection.missing.length > 0 && pages.isStuck
     if (selection.lag === 0 || isStuck) this.#lastLag = selection.lag
     if (!viewer.isOverGround) return
-    this.horizon?.cull(selection, viewer, tree.figure, pages.atlas.heightSide - 1)
+    this.#horizon?.cull(selection, viewer, tree.figure, pages.atlas.heightSide - 1)
   }
 
   /** Frees pages; the next update begins anew. */

@@ -19,6 +19,7 @@ import {
 } from 'three/webgpu'
 import type { Float, Vec3 } from '../tsl-types'
 import { bouncedLight } from './tsl/bouncedLight'
+import { schlick } from './tsl/schlick'
 import { WATER_FRESNEL } from './tsl/seaSurface'
 
 /** Reflectance of ground at normal incidence: that of three's standard materials. */
@@ -103,11 +104,9 @@ class GroundLightingModel extends PhysicalLightingModel {
     const irradiance = color.mul(normalView.dot(direction).clamp()).toConst() as Vec3
     const toViewer = viewDirection()
     const halfway = direction.add(toViewer).normalize()
-    const slant = toViewer.dot(halfway).clamp().oneMinus().toConst() as Float
-    const square = slant.mul(slant).toConst()
     const reflectance = specularColor as unknown as Vec3
-    // Schlick's, of the light that enters.
-    const entering = reflectance.oneMinus().mul(square.mul(square).mul(slant).oneMinus())
+    const gain = schlick(toViewer.dot(halfway))
+    const entering = reflectance.oneMinus().mul(gain.oneMinus())
     directDiffuse.addAssign(irradiance.mul(albedo().mul(entering)).div(Math.PI))
     const highlight = BRDF_GGX({
       lightDirection: direction,

@@ -16,14 +16,13 @@ import type { Texture } from 'three'
 import type { MeshStandardNodeMaterial, Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '@welkin/atmosphere'
 import type { PageAtlas } from '../pages/PageAtlas'
+import type { FixedOptions } from '../TerrainOptions'
 import type { TerrainUniforms } from '../TerrainUniforms'
 import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import { faceAxes } from '../tiles/tsl/cubeSphere'
 import type { ShaderFigure } from '../tiles/tsl/figure'
 import { tilePages, tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
-import type { GroundMask } from './maps/GroundMask'
-import type { GroundMaps } from './maps/GroundMaps'
 import { groundZone } from './tsl/groundRules'
 import { groundSurface } from './tsl/groundSurface'
 import {
@@ -58,9 +57,6 @@ const pictured = ({ rgb, a }: Vec4, made: Vec3, detail: Float): Vec3 => {
  * Material of a terrain: vertices on the ground and normals at every pixel, by pages.
  *
  * @param grain - As of `grainTexture`.
- * @param resolution - Cells along a tile's edge.
- * @param detail - As of `TileTree`.
- * @param maps - Maps of a user's own, or null.
  */
 export function terrainMaterial(
   atmosphere: Atmosphere,
@@ -68,10 +64,7 @@ export function terrainMaterial(
   grain: Texture,
   uniforms: TerrainUniforms,
   figure: ShaderFigure,
-  resolution: number,
-  detail: number,
-  maps: GroundMaps | null = null,
-  mask: GroundMask | null = null
+  { resolution, detail, maps, mask }: FixedOptions
 ): MeshStandardNodeMaterial {
   const material = new GroundMaterial()
   material.name = 'Welkin.Terrain'
@@ -144,10 +137,7 @@ export function terrainMaterial(
     seaLevel,
     {
       maps,
-      paint:
-        mask === null
-          ? null
-          : (layers, relief) => mask.layersAt(layers, offset, figure.isFlat, relief)
+      paint: (layers, relief) => mask?.layersAt(layers, offset, figure.isFlat, relief) ?? layers
     }
   )
   const depth = seaLevel.sub(ground.z).toConst('depth') as Float

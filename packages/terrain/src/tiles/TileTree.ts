@@ -45,8 +45,10 @@ export class TileTree {
   readonly finestLevel: number
   /** Whole faces. */
   readonly roots: readonly Tile[]
-  #selections = 0
-  readonly #ranges: number[]
+  /** Number of selections so far. */
+  selections = 0
+  /** Distances from the viewer at which levels end; infinity for the coarsest [m]. */
+  readonly ranges: readonly number[]
 
   /**
    * @param finestLevel - Level of the smallest tiles.
@@ -61,15 +63,10 @@ export class TileTree {
     this.finestLevel = finestLevel
     // Longest diagonal of a tile of level 0: that of the cube's face, at the face's middle.
     const diagonal = 2 * Math.SQRT2 * figure.maximumRadius
-    this.#ranges = Array.from({ length: finestLevel + 1 }, (_, level) =>
+    this.ranges = Array.from({ length: finestLevel + 1 }, (_, level) =>
       level === 0 ? Infinity : (detail * diagonal) / 2 ** (level - 1)
     )
     this.roots = facesOf(figure).map(face => new Tile(face, 0, 0, 0, figure, source))
-  }
-
-  /** Distance from the viewer at which a level ends; infinity for the coarsest [m]. */
-  range(level: number): number {
-    return this.#ranges[level]
   }
 
   /**
@@ -79,7 +76,7 @@ export class TileTree {
    * @param isPaged - True if a tile is split only when its own page is there and shown.
    */
   select(viewer: Viewer, most: number, target: TileSelection, isPaged = true): TileSelection {
-    this.#selections++
+    this.selections++
     const unseen: Tile[] = []
     target.tiles.length = target.missing.length = 0
     target.lag = 0
@@ -89,15 +86,15 @@ export class TileTree {
     while (open.length > 0) {
       const next: Tile[] = []
       for (const [i, tile] of open.entries()) {
-        tile.lastUse = this.#selections
+        tile.lastUse = this.selections
         const isVisible = isInFrustum(tile, viewer, radius)
         if (!isVisible && !mayCastShadow(tile, viewer)) continue
         if (isBelowHorizon(tile, viewer, radius)) continue
         const taken = target.tiles.length + unseen.length + next.length + (open.length - i)
-        tile.lastDrawn = this.#selections
+        tile.lastDrawn = this.selections
         const distance = distanceTo(tile, viewer.datumPoint)
         tile.distance = distance
-        const range = this.#ranges[tile.level + 1] * (isVisible ? 1 : UNSEEN)
+        const range = this.ranges[tile.level + 1] * (isVisible ? 1 : UNSEEN)
         const isNear = tile.level < this.finestLevel && distance < range
         const isShown = !isPaged || (tile.slot >= 0 && tile.fade === 0)
         if (isNear && isShown && taken + 4 <= most) {
@@ -107,7 +104,7 @@ export class TileTree {
         if (isVisible) target.tiles.push(tile)
         else unseen.push(tile)
         if (isShown) continue
-        const finer = isNear ? Math.log2(range / Math.max(distance, this.#ranges.at(-1)! / 2)) : 0
+        const finer = isNear ? Math.log2(range / Math.max(distance, this.ranges.at(-1)! / 2)) : 0
         target.lag = Math.max(target.lag, Math.ceil(finer) + 1)
         if (tile.slot < 0) {
           // Half of what tiles in view are, at the same size in the picture.
@@ -123,13 +120,8 @@ export class TileTree {
     target.inView = target.tiles.length
     target.tiles.push(...unseen)
     target.missing.sort((a, b) => b.urgency - a.urgency)
-    if (this.#selections % FORGET_EVERY === 0) for (const root of this.roots) this.#forget(root)
+    if (this.selections % FORGET_EVERY === 0) for (const root of this.roots) this.#forget(root)
     return target
-  }
-
-  /** Number of selections so far. */
-  get selections(): number {
-    return this.#selections
   }
 
   /**
@@ -141,7 +133,7 @@ export class TileTree {
     // All four, without stopping at the first that may not go.
     const kept = (tile.children ?? []).filter(child => !this.#forget(child))
     if (kept.length === 0) tile.children = null
-    return kept.length === 0 && tile.slot < 0 && this.#selections - tile.lastUse > FORGET_AFTER
+    return kept.length === 0 && tile.slot < 0 && this.selections - tile.lastUse > FORGET_AFTER
   }
 }
 

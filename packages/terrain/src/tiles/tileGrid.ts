@@ -32,12 +32,14 @@ export function tileGrid(resolution: number, capacity: number): InstancedBufferG
       }
     }
   }
-  const edge: number[] = []
-  for (let i = 0; i < resolution; i++) edge.push(i)
-  for (let i = 0; i < resolution; i++) edge.push(i * side + resolution)
-  for (let i = resolution; i > 0; i--) edge.push(resolution * side + i)
-  for (let i = resolution; i > 0; i--) edge.push(i * side)
+  // Once about the tile: each corner begins a side, which goes on by a step.
   const first = side * side
+  const edge = [
+    [0, 1],
+    [resolution, side],
+    [first - 1, -1],
+    [first - side, -side]
+  ].flatMap(([corner, step]) => Array.from({ length: resolution }, (_, i) => corner + i * step))
   for (const [n, i] of edge.entries()) {
     positions.push(positions[3 * i], positions[3 * i + 1], 1)
     const m = (n + 1) % edge.length

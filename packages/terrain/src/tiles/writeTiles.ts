@@ -11,7 +11,7 @@ const point = new Vector3()
  * @param position - Viewer [m].
  * @param reference - Point near the viewer's subpoint [m].
  * @param ground - Height of the ground below the viewer [m].
- * @param range - Distance at which a level ends [m].
+ * @param ranges - Distances at which levels end [m].
  */
 export function writeTiles(
   geometry: InstancedBufferGeometry,
@@ -19,7 +19,7 @@ export function writeTiles(
   position: Vector3,
   reference: Vector3,
   ground: number,
-  range: (level: number) => number
+  ranges: readonly number[]
 ): void {
   const attributes = INSTANCE_ATTRIBUTES.map(
     name => geometry.getAttribute(name) as InstancedBufferAttribute
@@ -29,7 +29,7 @@ export function writeTiles(
     const { center, normal, level, slot, parent } = tile
     const n = 4 * i
     point.copy(center).sub(position).addScaledVector(normal, ground).toArray(base, n)
-    base[n + 3] = Math.min(range(level), 1e30)
+    base[n + 3] = Math.min(ranges[level], 1e30)
     point.copy(center).sub(reference).toArray(offset, n)
     offset[n + 3] = tile.extent
     tile.cube.toArray(cube, n)

@@ -2,7 +2,7 @@ import { Fn, If, dFdx, dFdy, float, mat4, smoothstep, vec3, vec4 } from 'three/t
 import type { Texture } from 'three'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { GRAIN_SLOPE } from '../grainTexture'
-import { frameNear, pieceOf, tilingVertices, type TilingVertex } from './stochasticTiling'
+import { frameNear, pieceOf, tilingVertices } from './stochasticTiling'
 
 /** Sides of the picture on the ground [m], and longer side of a pixel's footprint at which nothing is left [m]. */
 const COARSE = { side: 17, gone: 1.1 }
@@ -92,31 +92,20 @@ export function grainAt(place: GrainPlace): Grain {
       const inSpace = ({ x, y }: Vec4): Vec3 =>
         frame.tangent.mul(x).add(frame.bitangent.mul(y)).mul(GRAIN_SLOPE)
       If(canopy.greaterThan(0), () => {
-        const { nearest, next, shares } = tilingVertices(place.reference, offset, CANOPY_CELLS)
-        const add = ({ away, random }: TilingVertex, share: Float): void => {
-          crowns.addAssign(
-            pieceOf(grain, frame, CANOPY.side, away, random.xy).mul(share.mul(canopy))
-          )
-        }
-        add(nearest(), shares.x)
-        If(shares.y.greaterThan(0), () => {
-          add(next(), shares.y)
+        tilingVertices(place.reference, offset, CANOPY_CELLS).each(({ away, random }, share) => {
+          const piece = pieceOf(grain, frame, CANOPY.side, away, random.xy)
+          crowns.addAssign(piece.mul(share.mul(canopy)))
         })
         crownSlope.assign(inSpace(crowns))
       })
       If(far.greaterThan(0), () => {
-        const { nearest, next, shares } = tilingVertices(place.reference, offset, CELLS)
-        const add = ({ away, random }: TilingVertex, share: Float): void => {
+        tilingVertices(place.reference, offset, CELLS).each(({ away, random }, share) => {
           const boulders = pieceOf(grain, frame, COARSE.side, away, random.xy)
           coarse.addAssign(boulders.mul(share.mul(far)))
           If(near.greaterThan(0), () => {
             const stones = pieceOf(grain, frame, FINE.side, away, random.zx)
             fine.addAssign(stones.mul(share.mul(near)))
           })
-        }
-        add(nearest(), shares.x)
-        If(shares.y.greaterThan(0), () => {
-          add(next(), shares.y)
         })
         fineSlope.assign(inSpace(fine))
         coarseSlope.assign(inSpace(coarse))

@@ -144,6 +144,8 @@ export function groundRules(
   const { stone, boulder, tuft, crown } = grain
   // A pixel that shows much ground shows its heights, too.
   const spread = grain.footprint.mul(SPREAD).min(MOST_SPREAD).toConst()
+  const blurred = ([from, to]: readonly [number, number], height: Float): Float =>
+    smoothstep(spread.negate().add(from), spread.add(to), height)
   const relief = stone.mul(0.6).add(boulder.mul(0.5)).add(crown.mul(0.6)).toConst()
   const steepness = cosSlope
     .oneMinus()
@@ -170,20 +172,15 @@ export function groundRules(
     .mul(smoothstep(...TREES_OVER_SEA, overSea.add(spread)))
     .toConst('woods')
   // Stones come through grass where they are highest.
-  const bareness = smoothstep(
-    spread.negate().add(SCREE[0]),
-    spread.add(SCREE[1]),
-    overTrees.add(relief.mul(260))
-  ).toConst('bareness')
+  const bareness = blurred(SCREE, overTrees.add(relief.mul(260))).toConst('bareness')
   // A pixel as large as a beach is mostly of what lies behind it.
   const inland = smoothstep(
     ...SHORE,
     overSea.add(patch.mul(SHORE_PATCH)).add(relief).add(spread)
   ).toConst('inland')
   const bare = smoothstep(...ROCK_STEEPNESS, steepness).toConst('bare')
-  const snow = smoothstep(
-    spread.negate().add(SNOW_OVER[0]),
-    spread.add(SNOW_OVER[1]),
+  const snow = blurred(
+    SNOW_OVER,
     overSnow.add(patch.mul(SNOW_PATCH)).add(hollow.mul(HOLLOW_SNOW)).sub(relief.mul(160))
   )
     .mul(smoothstep(...SNOW_STEEPNESS, steepness).oneMinus())

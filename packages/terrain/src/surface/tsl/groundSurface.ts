@@ -2,6 +2,7 @@ import { Fn, If, float, mix, smoothstep, vec3 } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 import type { GroundMaps } from '../maps/GroundMaps'
 import { grainAt } from './grain'
+import type { MappedGround } from './mappedGround'
 import {
   groundClimate,
   groundRules,
@@ -56,8 +57,8 @@ export interface GroundSurface {
 /** Texture maps and mask of the ground's surface. */
 export interface OwnSurface {
   readonly maps: GroundMaps | null
-  /** Layers where a mask has painted them, with edges that a height about 0 frays. */
-  readonly paint: ((layers: GroundLayers, relief: Float) => GroundLayers) | null
+  /** Layers where a mask has painted them, with edges that a height about 0 frays; without one as they are. */
+  readonly paint: (layers: GroundLayers, relief: Float) => GroundLayers
 }
 
 /**
@@ -77,7 +78,7 @@ export function groundSurface(
   const { stone, blade, boulder, tuft, crown, brush } = grain
   const rules = groundRules(place, grain, ground)
   const { relief, spread } = rules
-  const layers = paint === null ? rules.layers : paint(rules.layers, relief)
+  const layers = paint(rules.layers, relief)
   const { snow, bare, inland, bareness, dryness, woods } = layers
   // Hollows are darker: damp, and full of shadows that are smaller than a page's texel.
   const tone = patch.mul(0.9).add(relief.mul(0.35)).sub(place.hollow.mul(0.9)).toConst('tone')
@@ -123,20 +124,19 @@ export function groundSurface(
   const sand = color(SAND).mul(stone.mul(0.1).add(patch.mul(0.35)).add(1))
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.06))).toConst('wet')
   const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
-  const mapped = maps === null ? null : maps.groundAt(place, layers, colors)
-  const made =
-    mapped === null ? layered(layers, colors, [tone, stony, light, shrubs]) : mapped.color
+  const mapped = maps?.groundAt(place, layers, colors)
+  /** A value as made up, and that of maps where there are any. */
+  const either = (own: Float, ofMaps: (ground: MappedGround) => Float): Float =>
+    mapped === undefined ? own : mix(own, ofMaps(mapped), mapped.share)
+  const made = mapped?.color ?? layered(layers, colors, [tone, stony, light, shrubs])
   const dry = made.mul(wet.mul(0.45).add(0.55))
 
   // Stones stand out of rock and scree, hardly out of grass, sand and snow.
   const stoniness = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
   const ownBump = mix(float(0.05), stoniness, inland.max(bare)).mul(snow.mul(-0.96).add(1))
-  const bump = (mapped === null ? ownBump : ownBump.mul(mapped.share.oneMinus())).toConst('bump')
+  const bump = either(ownBump, () => float(0)).toConst('bump')
   const ownRough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
-  const rough =
-    mapped === null
-      ? ownRough
-      : mix(ownRough, mapped.roughness.mul(wet.mul(0.37).add(0.63)), mapped.share)
+  const rough = either(ownRough, ({ roughness }) => roughness.mul(wet.mul(0.37).add(0.63)))
   // Slopes that are smaller than a pixel roughen it: α² grows by twice their variance (Kaplanyan et al. 2016).
   const roughSquare = rough.mul(rough).toConst('roughSquare')
   const alpha = roughSquare.mul(roughSquare).add(
@@ -169,8 +169,8 @@ export function groundSurface(
     spread,
     color: dry,
     roughness: alpha.sqrt().sqrt().min(1),
-    grain: mapped === null ? slopes : slopes.add(mapped.slope.mul(mapped.share)),
-    occlusion: mapped === null ? occlusion : mix(occlusion, mapped.occlusion, mapped.share)
+    grain: mapped === undefined ? slopes : slopes.add(mapped.slope.mul(mapped.share)),
+    occlusion: either(occlusion, ground => ground.occlusion)
   }
 }
 

@@ -2,16 +2,17 @@ import { Fn, If, exp, float, mix, smoothstep, vec3, vec4 } from 'three/tsl'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { SEA_WAVES, WAVE_SLOPE } from '../seaWaves'
 import { gradientAlong } from './gradientAlong'
+import { schlick } from './schlick'
 
 /** Reflectance of deep clear water, linear sRGB: that of the sea of `planetGround`. */
-const DEEP = [0.007, 0.022, 0.042]
+const DEEP = [0.007, 0.022, 0.042] as const
 
 /**
  * Extinction of clear water, linear sRGB [1/m]: absorption by pure water at 610, 550 and 465 nm, and 0.03 by what floats in it.
  *
  * @see Pope & Fry 1997, "Absorption spectrum (380–700 nm) of pure water", table 3
  */
-const EXTINCTION = [0.294, 0.087, 0.04]
+const EXTINCTION = [0.294, 0.087, 0.04] as const
 
 /** Path of light through water, down and up, per depth [–]: both are refracted towards the vertical. */
 const PATH = 2.4
@@ -110,9 +111,8 @@ export function seaSurface(place: SeaPlace, seaVariance: Float, seconds: Float):
  * @see Akenine-Möller et al. 2018, Real-Time Rendering, 4th ed., §9.5, after Schlick 1994. Twin: ../cpu/seaSurface.ts
  */
 export function waterFresnel(cosViewer: Float, variance: Float): Float {
-  const rest = cosViewer.mul(cosViewer).add(variance).sqrt().oneMinus().clamp().toConst()
-  const square = rest.mul(rest).toConst()
-  return mix(float(WATER_FRESNEL), float(1), square.mul(square).mul(rest))
+  const cosine = cosViewer.mul(cosViewer).add(variance).sqrt()
+  return mix(float(WATER_FRESNEL), float(1), schlick(cosine))
 }
 
 /** Reflectance of foam. */
@@ -141,14 +141,8 @@ export function foamCover(
 ): Float {
   const [a, b, c, d] = FOAM_DEPTHS
   const phase = seconds.div(FOAM_PERIOD).add(patch.mul(2)).fract()
-  const swayed = depth
-    .add(
-      phase
-        .mul(2 * Math.PI)
-        .sin()
-        .mul(FOAM_SWAY)
-    )
-    .toConst() as Float
+  const sway = phase.mul(2 * Math.PI).sin()
+  const swayed = depth.add(sway.mul(FOAM_SWAY)).toConst() as Float
   const band = smoothstep(a, b, swayed).mul(smoothstep(c, d, swayed).oneMinus())
   const lace = smoothstep(-0.12, 0.22, tangle.add(band.mul(0.1)))
   return band.mul(lace).mul(footprint.div(FOAM_GONE).oneMinus().max(0))
@@ -160,7 +154,6 @@ export function foamCover(
  * @param depth - Depth of the water [m].
  */
 export function waterColor(bed: Vec3, depth: Float): Vec3 {
-  const [r, g, b] = EXTINCTION
-  const left = exp(vec3(r, g, b).mul(depth.max(0).mul(-PATH)))
-  return mix(vec3(DEEP[0], DEEP[1], DEEP[2]), bed, left)
+  const left = exp(vec3(...EXTINCTION).mul(depth.max(0).mul(-PATH)))
+  return mix(vec3(...DEEP), bed, left)
 }

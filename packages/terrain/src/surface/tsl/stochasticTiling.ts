@@ -1,4 +1,5 @@
 import {
+  If,
   bitAnd,
   bitOr,
   floatBitsToUint,
@@ -42,6 +43,8 @@ export interface TilingVertices {
   readonly next: () => TilingVertex
   /** Factors on their pictures; the second is often 0, the sum of the squares is 1. */
   readonly shares: Vec2
+  /** Calls with the nearest, and in a branch with the next where it counts. */
+  readonly each: (add: (vertex: TilingVertex, share: Float) => void) => void
 }
 
 /** Part of the nearest vertex's weight that the next must exceed to count. */
@@ -104,10 +107,17 @@ export function tilingVertices(reference: Vec3, offset: Vec3, cells: number): Ti
       random: latticeGradient(uvec3(ivec3(vertex).add(origin))).toConst()
     }
   }
+  const found = { nearest: vertexAt(nearest), next: vertexAt(next) }
+  const shares = square.mul(square.dot(square).max(1e-9).inverseSqrt()).toConst() as Vec2
   return {
-    nearest: vertexAt(nearest),
-    next: vertexAt(next),
-    shares: square.mul(square.dot(square).max(1e-9).inverseSqrt()).toConst()
+    ...found,
+    shares,
+    each(add) {
+      add(found.nearest(), shares.x)
+      If(shares.y.greaterThan(0), () => {
+        add(found.next(), shares.y)
+      })
+    }
   }
 }
 

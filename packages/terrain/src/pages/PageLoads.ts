@@ -1,0 +1,105 @@
+import type { Tile } from '../tiles/Tile'
+
+/** Selections after which what nobody asked for again is not waited for. */
+const WAIT_FOR = 60
+
+/** Selections after which what failed is asked for again. */
+const RETRY_AFTER = 300
+
+/** Most loads at once. */
+const MOST_LOADS = 12
+
+/** Data of a page that was asked for. */
+export interface PageLoad<T> {
+  readonly abort: AbortController
+  /** Selection that first asked for it. */
+  readonly first: number
+  /** Selection that last asked for it, before it failed. */
+  wanted: number
+  state: 'loading' | 'there' | 'failed'
+  /** Data, once they are there. */
+  value?: T
+}
+
+/** Data of pages that may take time to arrive. What nobody wants any more is given up, and what failed is asked for again later. */
+export class PageLoads<T> {
+  readonly #loads = new Map<Tile, PageLoad<T>>()
+
+  /** True if there are as many loads as there may be at once. */
+  get isFull(): boolean {
+    return this.#open.length >= MOST_LOADS
+  }
+
+  /** True if there is a load that has not failed. */
+  get isWaiting(): boolean {
+    return this.#open.length > 0
+  }
+
+  get #open(): PageLoad<T>[] {
+    return [...this.#loads.values()].filter(({ state }) => state !== 'failed')
+  }
+
+  /** Tiles with loads. */
+  get tiles(): Tile[] {
+    return [...this.#loads.keys()]
+  }
+
+  /** Load of a tile, which is still wanted; undefined if there is none, or it failed long ago. */
+  get(tile: Tile, selection: number): PageLoad<T> | undefined {
+    const load = this.#loads.get(tile)
+    if (load?.state !== 'failed') {
+      if (load !== undefined) load.wanted = selection
+      return load
+    }
+    return selection - load.wanted < RETRY_AFTER ? load : undefined
+  }
+
+  /** Asks for a tile's data. */
+  begin(
+    tile: Tile,
+    selection: number,
+    ask: (signal: AbortSignal) => T | PromiseLike<T>
+  ): PageLoad<T> {
+    const abort = new AbortController()
+    const load: PageLoad<T> = { abort, first: selection, wanted: selection, state: 'loading' }
+    this.#loads.set(tile, load)
+    const fail = (): void => {
+      load.state = 'failed'
+    }
+    const finish = (value: T): void => {
+      load.state = 'there'
+      load.value = value
+    }
+    try {
+      const answer = ask(abort.signal)
+      if (isPromise(answer)) answer.then(finish, fail)
+      else finish(answer)
+    } catch {
+      fail()
+    }
+    return load
+  }
+
+  /** Forgets a load that has been made use of. */
+  delete(tile: Tile): void {
+    this.#loads.delete(tile)
+  }
+
+  /** Gives up what nobody waits for. A page that was drawn without it asks for it again when it is seen. */
+  abandon(selection: number): void {
+    for (const [tile, { state, wanted, abort }] of this.#loads) {
+      if (selection - wanted <= (state === 'failed' ? RETRY_AFTER : WAIT_FOR)) continue
+      abort.abort()
+      if (tile.slot < 0) this.#loads.delete(tile)
+    }
+  }
+
+  /** Gives up all. */
+  clear(): void {
+    for (const { abort } of this.#loads.values()) abort.abort()
+    this.#loads.clear()
+  }
+}
+
+const isPromise = <T>(answer: T | PromiseLike<T>): answer is PromiseLike<T> =>
+  answer instanceof Promise
