@@ -233,7 +233,7 @@ export function groundMaterial(
       sum.assign(tufts.mul(upTo(MIDDLE)))
     })
     If(distance.lessThan(NEAR), () => {
-      const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(1.6)
+      const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(2.2)
       sum.addAssign(finest.mul(upTo(NEAR)))
     })
     return sum
@@ -276,7 +276,7 @@ export function groundMaterial(
     .add(grain.mul(GRASS).mul(upTo(SHADED)))
   const normal = grainNormal(broadNormal, relieved).toVar()
   material.normalNode = transformNormalToView(normal)
-  const dry = broad.mul(0.6).add(fine.mul(0.45)).add(0.45).clamp()
+  const dry = broad.mul(0.6).add(fine.mul(0.28)).add(0.43).clamp()
   const meadow = mix(vec3(0.053, 0.086, 0.027), vec3(0.14, 0.134, 0.055), dry).toVar()
   const farmed = Fn(() => {
     const ground = meadow.toVar()
@@ -301,7 +301,7 @@ export function groundMaterial(
     .mul(upTo(MIDDLE).mul(clumps.mul(0.9).add(0.65).clamp(0.15, 1.2)))
     .toVar()
   const hue = mix(vec3(0.93, 1.02, 0.86), vec3(1.08, 0.99, 1.06), tuft.add(0.5))
-  const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.42)))
+  const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.5)))
   let color: Node<'vec3'> = mix(farmed, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
   color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
   color = mix(color, trees, forest)
