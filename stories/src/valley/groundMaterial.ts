@@ -229,7 +229,7 @@ export function groundMaterial(
   const grain = Fn(() => {
     const sum = float(0).toVar()
     If(distance.lessThan(MIDDLE), () => {
-      const tufts = texture(picture, bent).grad(bentAcross, bentAlong).r.sub(0.5).mul(1.2)
+      const tufts = texture(picture, bent).grad(bentAcross, bentAlong).r.sub(0.5).mul(0.85)
       sum.assign(tufts.mul(upTo(MIDDLE)))
     })
     If(distance.lessThan(NEAR), () => {
@@ -301,7 +301,7 @@ export function groundMaterial(
     .mul(upTo(MIDDLE).mul(clumps.mul(0.9).add(0.65).clamp(0.15, 1.2)))
     .toVar()
   const hue = mix(vec3(0.93, 1.02, 0.86), vec3(1.08, 0.99, 1.06), tuft.add(0.5))
-  const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.5)))
+  const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.4)))
   let color: Node<'vec3'> = mix(farmed, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
   color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
   color = mix(color, trees, forest)

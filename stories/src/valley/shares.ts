@@ -70,7 +70,7 @@ const TRIED = 4
  * Line about the GPU's time in a frame, and below it the share of each feature; nothing while none is known.
  *
  * @param passes - Times of the passes of some frames.
- * @param frames - How many frames they are of.
+ * @param frames - Number of those frames.
  * @param readings - Readings until now.
  */
 export function gpuText(
