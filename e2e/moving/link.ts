@@ -115,6 +115,11 @@ export async function testLink(browser: Browser, origin: string, report: Report)
   check(report, await look(story), wanted)
 
   await testQuality(page, story, report, wanted)
+  const missing = await page.$eval('#control-quality', control => {
+    const table = control.closest('table')!.getBoundingClientRect()
+    return Math.max(table.right - document.documentElement.clientWidth, 0)
+  })
+  report.check(missing === 0, 'the panel shows the whole of the controls', `${missing} px cut off`)
   // By the controls, and by the scene, whose clock runs.
   await page.selectOption('#control-weather', 'overcast')
   await page.fill('#control-hour', '6.5')

@@ -5,5 +5,5 @@ addons.setConfig({
   theme: create({ base: 'dark', brandTitle: 'Welkin' }),
   // Keys belong to the story.
   ui: { enableShortcuts: false },
-  layout: { panelPosition: 'right', rightPanelWidth: 340, navSize: 190 }
+  layout: { panelPosition: 'right', rightPanelWidth: 400, navSize: 190 }
 })

@@ -11,7 +11,7 @@ import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { groundHeight } from './globe/groundHeight'
 import { loadTiles, tilesProgress } from './globe/loadTiles'
-import { moveCamera } from './globe/places'
+import { flyToPlace, moveCamera } from './globe/places'
 import { aimShadow, prepareShadow } from './globe/sunShadow'
 import { Explorer } from './moving/Explorer'
 import { overlayOn } from './overlay'
@@ -70,6 +70,8 @@ export async function createPhotogrammetry(
   let shown: UnlitTiles | undefined
   let ready: Promise<void> = Promise.resolve()
   let loads = 0
+  /** True while the tiles on show are of the whole world, whose places one flies to. */
+  let isWorld = false
   let reason = ''
 
   const sourceOf = ({ url, key }: TileSource): TileSource | undefined =>
@@ -99,6 +101,7 @@ export async function createPhotogrammetry(
     const count = ++loads
     shown?.dispose()
     ground.clear()
+    isWorld = source !== undefined
     const mine = (shown = unlitTiles(source))
     ground.add(mine.tiles.group)
     mine.tiles.setCamera(camera)
@@ -166,7 +169,10 @@ export async function createPhotogrammetry(
       const { url, key, place } = current
       Object.assign(current, changes)
       apply()
-      if (url !== current.url || key !== current.key || place !== current.place) showAsked()
+      const isOther = url !== current.url || key !== current.key
+      if (!isOther && place === current.place) return
+      if (isOther || !isWorld || explorer === undefined) showAsked()
+      else void flyToPlace(explorer, camera, SIGHTS[current.place])
     },
     dispose() {
       loads++

@@ -20,7 +20,7 @@ const part = (name: string): object => ({ name, control: 'boolean', table: { cat
 
 const POST_EFFECTS = { table: { category: 'Post effects' } }
 
-/** Switch of a post effect; the picture is compiled anew. */
+/** Switch of a post effect. */
 const effect = (name: string, description: string): object => ({
   name,
   description,
@@ -92,11 +92,13 @@ const meta: Meta<ValleyArgs> = {
     antialiasing: {
       name: 'Smooth edges',
       ...choiceOf(ANTIALIASING),
-      description:
-        'Reflections of the screen (SSR) are not here: three has them on metal, of which there is none',
       ...POST_EFFECTS
     },
     occlusion: effect('Ambient occlusion', 'Of the light of the sky alone (GTAO)'),
+    reflections: effect(
+      'Reflections',
+      'The lake mirrors what is in the picture (SSR); without, the sky alone'
+    ),
     bloom: effect('Bloom', 'A halo about what is bright'),
     depthOfField: effect(
       'Depth of field',

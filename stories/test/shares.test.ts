@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest'
-import { lastFeature, sharesOf } from '../src/valley/shares'
+import { gpuText, lastFeature, sharesOf } from '../src/valley/shares'
 
 const none = { antialiasing: 'none', bloom: false, motionBlur: false } as const
 
@@ -51,4 +51,15 @@ it('names the last pass for what it draws', () => {
   expect(lastFeature({ ...none, motionBlur: true })).toBe('motion blur and tone mapping')
   // Bloom reads the blurred picture, which then has a pass of its own.
   expect(lastFeature({ ...none, motionBlur: true, bloom: true })).toBe('tone mapping')
+})
+
+it('says how long frames take, by feature, or that the browser keeps no times once that is known', () => {
+  const passes = [
+    ['output', 3],
+    ['Welkin.CloudsMarch', 1]
+  ] as const
+  const shares = 'land, trees, village and lake, lit 1.50\nclouds, rain and snow under them 0.50'
+  expect(gpuText(passes, 2, 9, none)).toBe(` · GPU 2.0 ms\n${shares}`)
+  expect(gpuText([], 0, 1, none)).toBe('')
+  expect(gpuText([], 0, 9, none)).toContain('no GPU times')
 })

@@ -13,7 +13,7 @@ import { createCityLights } from './cityLights'
 import { createEarthSurface } from './earthSurface'
 import { groundHeight } from './groundHeight'
 import { loadTiles, tilesProgress } from './loadTiles'
-import { moveCamera } from './places'
+import { flyToPlace, moveCamera } from './places'
 import type { Place } from './places'
 import { aimShadow, prepareShadow } from './sunShadow'
 import { createTerrain } from './terrain'
@@ -152,14 +152,8 @@ export async function createLand<Args extends RendererArgs>(
 
   /** Flies there; a single frame is there at once. */
   const flyTo = (place: Place): void => {
-    if (explorer === undefined) {
-      goTo(place)
-      return
-    }
-    const aim = moveCamera(new PerspectiveCamera(), place)
-    const direction = aim.getWorldDirection(new Vector3())
-    const distance = camera.position.distanceTo(aim.position)
-    void explorer.flyTo({ position: aim.position, direction }, 1 + 0.5 * Math.log10(1 + distance))
+    if (explorer === undefined) goTo(place)
+    else void flyToPlace(explorer, camera, place)
   }
 
   story.apply(current)

@@ -1,6 +1,6 @@
 import { Ellipsoid } from '@welkin/geo'
-import { Matrix4, Vector3 } from 'three'
-import type { PerspectiveCamera } from 'three'
+import { Matrix4, PerspectiveCamera, Vector3 } from 'three'
+import type { Explorer } from '../moving/Explorer'
 
 /** Position and direction of the camera. */
 export interface Place {
@@ -102,4 +102,21 @@ export function moveCamera(camera: PerspectiveCamera, place: Place): Perspective
   camera.position.copy(position)
   camera.updateMatrixWorld()
   return camera
+}
+
+/**
+ * Flies to a place of a world that is ECEF, the longer the farther it is.
+ *
+ * @param camera - That of the explorer.
+ * @returns Promise that settles on arrival, or when the flight is broken off.
+ */
+export function flyToPlace(
+  explorer: Explorer,
+  camera: PerspectiveCamera,
+  place: Place
+): Promise<void> {
+  const aim = moveCamera(new PerspectiveCamera(), place)
+  const direction = aim.getWorldDirection(new Vector3())
+  const distance = camera.position.distanceTo(aim.position)
+  return explorer.flyTo({ position: aim.position, direction }, 1 + 0.5 * Math.log10(1 + distance))
 }

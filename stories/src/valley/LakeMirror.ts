@@ -66,6 +66,9 @@ export class LakeMirror {
     this.#pass = new FragmentPass('LakeMirror', light)
   }
 
+  /** False for water without a mirror image, which then costs nothing. Default true. */
+  isOn = true
+
   /** Makes the texture that the water reads, before its first frame. */
   prepare(renderer: Renderer): void {
     renderer.initRenderTarget(this.#target)
@@ -81,13 +84,14 @@ export class LakeMirror {
 
   /** Keeps the picture that was just drawn in a luminance scale, and its camera. */
   update(renderer: Renderer, camera: PerspectiveCamera, luminanceScale: number): void {
+    this.#isDrawn.value = Number(this.isOn)
+    if (!this.isOn) return
     this.#kept = luminanceScale
     const { width, height } = this.#picture.value.image as { width: number; height: number }
     this.#target.setSize(Math.ceil(width / 2), Math.ceil(height / 2))
     this.#pass.render(renderer, this.#target)
     this.#toScreen.value.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
     this.#scale.value = camera.projectionMatrix.elements[5] / 2
-    this.#isDrawn.value = 1
   }
 
   /** Light from the mirrored direction, and the part of it that the picture has, for a fragment of the water. */
@@ -98,6 +102,19 @@ export class LakeMirror {
         .toConst()
       const from = this.#toScreen.mul(vec4(positionWorld, 1)).toConst()
       const along = this.#toScreen.mul(vec4(direction, 0)).toConst()
+      // What is too small for ripples stretches the image upwards.
+      const stretch = roughness.mul(roughness).mul(this.#scale).toConst()
+      const image = vec4(0).toVar()
+      If(this.#isDrawn.greaterThan(0), () => {
+        image.assign(this.#follow(from, along, stretch))
+      })
+      return image
+    })().toVar()
+  }
+
+  /** Follows a mirrored ray over the screen, from a place along a direction, both in clip space. */
+  #follow(from: Vec4, along: Vec4, stretch: Node<'float'>): Vec4 {
+    return Fn(() => {
       /** Place on the screen, and distance along the camera's axis. */
       const at = (far: Node<'float'>): Node<'vec3'> => {
         const clip = from.add(along.mul(far)).toConst()
@@ -141,12 +158,10 @@ export class LakeMirror {
       const outside = max(hit.xy.sub(0.5).abs().sub(0.5), 0)
       const fade = smoothstep(FADE, 0, max(outside.x, outside.y))
       const isAhead = hit.z.greaterThan(0).select(1, 0)
-      // What is too small for ripples stretches the image upwards.
-      const stretch = vec2(0, roughness.mul(roughness).mul(this.#scale))
-      const light = [-1, 0, 1].map(part => this.#read(hit.xy.add(stretch.mul(part))).rgb)
+      const light = [-1, 0, 1].map(part => this.#read(hit.xy.add(vec2(0, stretch.mul(part)))).rgb)
       const mean = light[0].add(light[1].mul(2)).add(light[2]).mul(this.#gain.mul(0.25))
-      return vec4(mean, isHit.mul(fade).mul(isAhead).mul(this.#isDrawn))
-    })().toVar()
+      return vec4(mean, isHit.mul(fade).mul(isAhead))
+    })()
   }
 
   #read(place: Vec2): Vec4 {

@@ -39,6 +39,8 @@ import { valleyLayers, type Weather, WeatherBlend, type WeatherName } from './we
 
 /** State of the valley. */
 export interface ValleyState extends ValleyFeatures, ValleyEffects, ValleyFactors {
+  /** Reflections of the screen (SSR): the lake mirrors the picture itself. */
+  reflections: boolean
   weather: WeatherName
   /** Place on the Earth [degrees]. */
   latitude: number
@@ -205,7 +207,7 @@ export class Valley {
     const before = { ...this.#state }
     Object.assign(this.#state, changes)
     const { weather, latitude, longitude, date, hour, paused, quality } = this.#state
-    const { trees, village, water, environment } = this.#state
+    const { trees, village, water, environment, reflections } = this.#state
     this.#weather.set(weather, atOnce)
     this.cycle.paused = paused
     if (latitude !== before.latitude || longitude !== before.longitude) {
@@ -225,6 +227,7 @@ export class Valley {
     this.scene.environmentIntensity = Number(environment)
     this.#village.object.visible = village
     this.#water.mesh.visible = water
+    this.#mirror.isOn = reflections
     const keys = ['trees', 'village', 'water', 'quality'] as const
     if (keys.some(key => this.#state[key] !== before[key])) this.#redrawShadows()
     this.#applyWeather(atOnce)

@@ -32,10 +32,10 @@ export const RADIUS = 6_371_000
 
 /** Colours of fields, linear sRGB: hay, young corn, earth, clover, ripe corn. */
 const CROPS = [
-  [0.135, 0.155, 0.046],
-  [0.06, 0.122, 0.027],
+  [0.133, 0.15, 0.054],
+  [0.066, 0.112, 0.034],
   [0.12, 0.096, 0.06],
-  [0.105, 0.14, 0.04],
+  [0.1, 0.128, 0.045],
   [0.25, 0.192, 0.066]
 ] as const
 
@@ -103,7 +103,7 @@ const GRASS = 0.1
 const SHADED = 140
 
 /** Height of crowns over the noise that they follow [m], and distance within which woods shade themselves [m]. */
-const CROWNS = 5
+const CROWNS = 3.5
 const WOODED = 14_000
 
 /** Brightness of crowns' tops over the noise that they follow, and of what is between them. */
@@ -111,10 +111,18 @@ const CANOPY = [-0.4, 0.35] as const
 
 /** Widths over which noise of rock repeats [m]; heights of its cracks over it [m]. Layers of rock are flatter than wide. */
 const CRACKS = [
-  [1240, 20],
-  [173, 4]
+  [1240, 11],
+  [173, 1.9]
 ] as const
 const LAYERED = 1.7
+
+/** Pixels over which rock is blurred: its bumps are differences between pixels, of which sharp ones would be pepper. */
+const BLURRED = 2
+
+/** Widths over which noise of crowns, and of clumps of grass elsewhere, repeats [m]; share of woods from which ground is theirs. */
+const CROWNED = 43
+const CLUMPS = 71
+const WOODLAND = 0.12
 
 /** Width of the edge of a wood, in its share of the ground. */
 const EDGE = 0.16
@@ -137,6 +145,26 @@ interface Footprint {
   readonly down: Node<'vec3'>
 }
 
+/** Coordinates of noise that repeats after a period [m]: the plane is turned, for no two periods have a common multiple. */
+function turned({ x, z }: Node<'vec3'>, period: number): Node<'vec2'> {
+  const [cos, sine] = [Math.cos(period), Math.sin(period)].map(t => t / period)
+  const place = vec2(x, z)
+  return vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
+}
+
+/** Noise of crowns in woods, which are finer than clumps of grass elsewhere: coarse ones seen along slopes are streaks. */
+function clumpsIn(
+  picture: Texture,
+  isWood: Node<'bool'>,
+  { right, down }: Footprint
+): Node<'float'> {
+  const finer = isWood.select(CLUMPS / CROWNED, 1).toVar()
+  const [at, across, along] = [positionWorld, right, down].map(way =>
+    turned(way, CLUMPS).mul(finer)
+  )
+  return texture(picture, at).grad(across, along).r.sub(0.5).mul(2)
+}
+
 /**
  * Noise of rock, seen from the side: from above, steep slopes would have streaks. Height of cracks [m], and their brightness in [−1, 1].
  *
@@ -152,8 +180,12 @@ function cracksIn(
   const [place, across, along] = [flat(positionWorld), flat(right), flat(down)]
   let sum: Node<'vec2'> = vec2(0)
   for (const [period, deep] of CRACKS) {
-    const [at, ...change] = [place, across, along].map(each => each.div(period))
-    const noise = texture(picture, at).grad(change[0], change[1]).r.sub(0.5).mul(2).toConst()
+    const change = [across, along].map(each => each.mul(BLURRED / period))
+    const noise = texture(picture, place.div(period))
+      .grad(change[0], change[1])
+      .r.sub(0.5)
+      .mul(2)
+      .toConst()
     // Cracks are sharp, what is between them is round.
     const cracked = noise.abs().mul(1.6).min(1).sub(0.4).toConst()
     sum = sum.add(vec2(cracked.mul(deep), cracked.add(noise.mul(0.5))))
@@ -177,12 +209,9 @@ export function groundMaterial(
   for (const each of [picture, grazed]) {
     material.addEventListener('dispose', () => each.dispose())
   }
-  // The coarsest of its five octaves has 8 cells a period; no two periods have a common multiple, and each is turned. Seen from
-  // above: with heights in it, slopes that go with them have streaks.
-  const turnedBy = (period: number): Node<'vec2'> => {
-    const [cos, sine] = [Math.cos(period), Math.sin(period)].map(t => t / period)
-    return vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
-  }
+  // The coarsest of its five octaves has 8 cells a period. Seen from above: with heights in it, slopes that go with them have
+  // streaks.
+  const turnedBy = (period: number): Node<'vec2'> => turned(positionWorld, period)
   const noiseAt = (at: Node<'vec2'>): Node<'float'> => texture(picture, at).r.sub(0.5).mul(2)
   const noise = (period: number): Node<'float'> => noiseAt(turnedBy(period))
   // A period that is a few pixels wide would show as a net.
@@ -200,29 +229,30 @@ export function groundMaterial(
   const grain = Fn(() => {
     const sum = float(0).toVar()
     If(distance.lessThan(MIDDLE), () => {
-      const tufts = texture(picture, bent).grad(bentAcross, bentAlong).r.sub(0.5).mul(1.2)
+      const tufts = texture(picture, bent).grad(bentAcross, bentAlong).r.sub(0.5).mul(0.85)
       sum.assign(tufts.mul(upTo(MIDDLE)))
     })
     If(distance.lessThan(NEAR), () => {
-      const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(1.6)
+      const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(2.2)
       sum.addAssign(finest.mul(upTo(NEAR)))
     })
     return sum
   })().toVar()
-  const clumps = noise(71).mul(upTo(9000)).toVar()
+  const footprint = { right: dFdx(positionWorld).toVar(), down: dFdy(positionWorld).toVar() }
+  const cover = attribute<'vec2'>('cover', 'vec2')
+  const isWood = cover.x.greaterThan(WOODLAND)
+  const clumps = clumpsIn(picture, isWood, footprint).mul(upTo(9000)).toVar()
   const fine = grain.add(clumps).add(patches).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const rough = broad.mul(0.5).add(patches).toVar()
   const broadNormal = relief.normal(normalWorldGeometry).toConst()
   const slope = broadNormal.y.oneMinus().add(fine.mul(0.02)).add(rough.mul(0.07)).toVar()
-  const cover = attribute<'vec2'>('cover', 'vec2')
   const field = cover.y
   // Woods have edges: between the grid's vertices noise tells where they are.
   const uneven = patches.mul(0.42).add(clumps.mul(0.12)).add(broad.mul(0.1))
   const wooded = cover.x.add(uneven.mul(smoothstep(0, 0.25, cover.x)))
   const forest = smoothstep(0.42 - EDGE, 0.42 + EDGE, wooded).toVar()
   const rocky = smoothstep(0.27, 0.42, slope).toVar()
-  const footprint = { right: dFdx(positionWorld).toVar(), down: dFdy(positionWorld).toVar() }
   const cracks = Fn(() => {
     const found = vec2(0).toVar()
     If(rocky.greaterThan(0), () => {
@@ -240,13 +270,14 @@ export function groundMaterial(
     broadNormal.dot(cameraPosition.sub(positionWorld).normalize())
   )
   const relieved = crowns
-    .mul(upTo(WOODED).mul(facing))
-    .add(grain.mul(GRASS).mul(upTo(SHADED)))
+    .mul(upTo(WOODED))
     .add(cracks.x)
+    .mul(facing)
+    .add(grain.mul(GRASS).mul(upTo(SHADED)))
   const normal = grainNormal(broadNormal, relieved).toVar()
   material.normalNode = transformNormalToView(normal)
-  const dry = broad.mul(0.6).add(fine.mul(0.45)).add(0.45).clamp()
-  const meadow = mix(vec3(0.05, 0.09, 0.02), vec3(0.14, 0.135, 0.05), dry).toVar()
+  const dry = broad.mul(0.6).add(fine.mul(0.28)).add(0.43).clamp()
+  const meadow = mix(vec3(0.053, 0.086, 0.027), vec3(0.14, 0.134, 0.055), dry).toVar()
   const farmed = Fn(() => {
     const ground = meadow.toVar()
     If(height.lessThan(FARMED), () => {
@@ -256,7 +287,7 @@ export function groundMaterial(
     return ground
   })()
   const canopy = smoothstep(...CANOPY, clumps.add(patches.mul(0.4)))
-  const trees = mix(vec3(0.006, 0.012, 0.006), vec3(0.04, 0.056, 0.02), canopy)
+  const trees = mix(vec3(0.009, 0.016, 0.008), vec3(0.033, 0.046, 0.018), canopy)
   const weathered = fine.mul(0.35).add(cracks.y.mul(0.55)).add(0.5).clamp()
   const rock = mix(vec3(0.105, 0.1, 0.094), vec3(0.29, 0.274, 0.247), weathered)
   const alpine = mix(
@@ -270,7 +301,7 @@ export function groundMaterial(
     .mul(upTo(MIDDLE).mul(clumps.mul(0.9).add(0.65).clamp(0.15, 1.2)))
     .toVar()
   const hue = mix(vec3(0.93, 1.02, 0.86), vec3(1.08, 0.99, 1.06), tuft.add(0.5))
-  const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.42)))
+  const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.4)))
   let color: Node<'vec3'> = mix(farmed, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
   color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
   color = mix(color, trees, forest)

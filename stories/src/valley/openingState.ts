@@ -28,6 +28,7 @@ export const openingState = {
   autoExposure: true,
   antialiasing: 'none' as const,
   occlusion: false,
+  reflections: true,
   bloom: true,
   depthOfField: false,
   motionBlur: false,

@@ -4,7 +4,7 @@ import type { WebGPURenderer } from 'three/webgpu'
 import { overlayOn } from '../overlay'
 import { clockOf } from './clock'
 import { PassTimes, type PassTime } from './PassTimes'
-import { sharesOf, type LastPass } from './shares'
+import { gpuText, type LastPass } from './shares'
 
 /** Time between two readings [ms]. */
 const PERIOD = 500
@@ -23,6 +23,10 @@ export class Readout {
   /** Times of the passes since the last reading, and the frames that they are of. */
   #passes: PassTime[] = []
   #timedFrames = 0
+  /** Readings until now, true once one had times, and what it says. */
+  #readings = 0
+  #hadTimes = false
+  #gpu = ''
 
   constructor(canvas: HTMLCanvasElement, renderer: WebGPURenderer) {
     this.#renderer = renderer
@@ -57,24 +61,19 @@ export class Readout {
     const { x, y, z } = camera.position
     const clock = `${DATE.format(cycle.time)}, ${clockOf(cycle.hour)}`
     const cpu = (this.#cpu / this.#frames).toFixed(1)
+    const hasTimes = this.#timedFrames > 0
+    // The last ones stay until there are others.
+    if (hasTimes || !this.#hadTimes) {
+      this.#gpu = gpuText(this.#passes, this.#timedFrames, this.#readings, effects)
+    }
+    this.#hadTimes ||= hasTimes
     this.#element.textContent =
       `${clock} · east ${x.toFixed(0)} m, north ${(-z).toFixed(0)} m · ` +
       `${(y - ground).toFixed(1)} m above ground\n` +
-      `${((1000 * this.#frames) / elapsed).toFixed(0)} frames/s · CPU ${cpu} ms${this.#gpu(effects)}`
+      `${((1000 * this.#frames) / elapsed).toFixed(0)} frames/s · CPU ${cpu} ms${this.#gpu}`
     this.#frames = this.#cpu = this.#timedFrames = 0
     this.#passes = []
     this.#since = now
-  }
-
-  /** Shares of the features, the mean of some frames; nothing where the backend keeps no times. */
-  #gpu(effects: LastPass): string {
-    const frames = this.#timedFrames
-    if (frames === 0) return ''
-    const total = this.#passes.reduce((sum, [, milliseconds]) => sum + milliseconds, 0) / frames
-    const shares = sharesOf(this.#passes, effects)
-      .map(([name, milliseconds]) => `${name} ${(milliseconds / frames).toFixed(2)}`)
-      .join('\n')
-    return ` · GPU ${total.toFixed(1)} ms\n${shares}`
   }
 
   /** Reads the GPU's times where the backend keeps them. */
@@ -85,6 +84,7 @@ export class Readout {
       .catch(() => ({ passes: [], frames: 0 }))
     this.#passes.push(...passes)
     this.#timedFrames += frames
+    this.#readings++
     this.#isReading = false
   }
 

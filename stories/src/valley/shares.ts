@@ -62,3 +62,27 @@ export function sharesOf(passes: readonly PassTime[], last: LastPass): PassTime[
   }
   return [...sums].sort(([, a], [, b]) => b - a)
 }
+
+/** Readings without times after which there will be none. */
+const TRIED = 4
+
+/**
+ * Line about the GPU's time in a frame, and below it the share of each feature; nothing while none is known.
+ *
+ * @param passes - Times of the passes of some frames.
+ * @param frames - Number of those frames.
+ * @param readings - Readings until now.
+ */
+export function gpuText(
+  passes: readonly PassTime[],
+  frames: number,
+  readings: number,
+  last: LastPass
+): string {
+  if (frames === 0) return readings < TRIED ? '' : ' · no GPU times in this browser'
+  const total = passes.reduce((sum, [, milliseconds]) => sum + milliseconds, 0) / frames
+  const shares = sharesOf(passes, last)
+    .map(([name, milliseconds]) => `${name} ${(milliseconds / frames).toFixed(2)}`)
+    .join('\n')
+  return ` · GPU ${total.toFixed(1)} ms\n${shares}`
+}

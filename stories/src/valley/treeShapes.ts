@@ -15,8 +15,8 @@ type Color = readonly [number, number, number]
 
 /** Colours of needles, leaves and bark. */
 const NEEDLES = [0.03, 0.048, 0.02] as const
-const LEAVES = [0.054, 0.088, 0.023] as const
-const BARK = [0.06, 0.045, 0.032] as const
+const LEAVES = [0.055, 0.084, 0.027] as const
+const BARK = [0.056, 0.048, 0.04] as const
 
 /** Leaves in the shade of a crown: with next to no blue, by which they have no gaps. */
 const SHADE = [0.021, 0.034, 0.002] as const

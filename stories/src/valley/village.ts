@@ -1,11 +1,9 @@
 import {
   BoxGeometry,
   Color,
-  ConeGeometry,
   Group,
   InstancedMesh,
   Matrix4,
-  Mesh,
   PointLight,
   Quaternion,
   Vector3
@@ -26,6 +24,7 @@ import {
 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { randomSequence } from '../random'
+import { Church } from './church'
 import { groundHeight } from './ground'
 import { VILLAGE } from './places'
 import { roof, roofColor } from './roof'
@@ -222,8 +221,7 @@ export function createVillage(
   const tiles = new VertexLitMaterial()
   tiles.colorNode = roofColor()
   const plaster = new VertexLitMaterial({ color: '#b9b1a2' })
-  const slates = new VertexLitMaterial({ color: '#5b3a2e' })
-  for (const each of [tiles, plaster, slates]) each.snowNode = snow
+  for (const each of [tiles, plaster]) each.snowNode = snow
   const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)
   const roofs = new InstancedMesh(roof(), tiles, HOUSES)
   const chimneys = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), plaster, HOUSES)
@@ -256,21 +254,11 @@ export function createVillage(
   }
   const { x, z } = middle
   const base = heightAt(x, z) - 0.5
-  const tower = new Mesh(new BoxGeometry(6, 22, 6).translate(0, 11, 0), plaster)
-  const spire = new Mesh(
-    new ConeGeometry(4.6, 15, 4).rotateY(Math.PI / 4).translate(0, 29.5, 0),
-    slates
-  )
-  const nave = new Mesh(new BoxGeometry(11, 9, 22).translate(0, 4.5, 14), plaster)
-  // Its tiles are counted on the unit roof, as those of houses.
-  const naveRoof = new Mesh(roof(), tiles)
-  naveRoof.scale.set(11, 6, 22)
-  naveRoof.position.set(0, 9, 14)
-  const church = new Group().add(tower, spire, nave, naveRoof)
+  const church = new Church(tiles, snow)
   church.position.set(x, base, z)
   const lights = lamps ?? churchLamp(x, base, z)
   const object = new Group().add(bodies, roofs, chimneys, church, lights)
-  for (const each of [bodies, roofs, chimneys, ...church.children]) {
+  for (const each of [bodies, roofs, chimneys]) {
     each.castShadow = each.receiveShadow = true
   }
   bodies.frustumCulled = roofs.frustumCulled = chimneys.frustumCulled = false
@@ -282,13 +270,13 @@ export function createVillage(
       lights.light(share, luminanceScale)
     },
     dispose() {
-      for (const mesh of [bodies, roofs, chimneys, tower, spire, nave, naveRoof])
-        mesh.geometry.dispose()
+      for (const { geometry } of [bodies, roofs, chimneys]) geometry.dispose()
+      church.dispose()
       bodies.dispose()
       roofs.dispose()
       chimneys.dispose()
       lights.dispose()
-      for (const material of [walls, tiles, slates, plaster]) material.dispose()
+      for (const material of [walls, tiles, plaster]) material.dispose()
     }
   }
 }
