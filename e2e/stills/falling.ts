@@ -15,11 +15,12 @@ export const falling = [
     name: 'shower-bow',
     about:
       'a sun of 12° behind: the bow stands in the sunlit shaft, and ends at its edge and in shadow',
-    clouds: { preset: 'shower', coverage: 0.15 },
-    place: { longitude: 140.6798, latitude: 35.2496 },
+    clouds: { preset: 'shower', coverage: 0.2, layer: { baseAltitude: 1500 } },
+    place: { longitude: 140.6756, latitude: 35.2716 },
     altitude: 60,
-    sun: { elevation: 12, azimuth: 206 },
-    view: { azimuth: 60, pitch: 10 },
+    sun: { elevation: 22, azimuth: 262 },
+    view: { azimuth: 82, pitch: 10 },
+    fieldOfView: 62,
     land: 'hills'
   },
   {
