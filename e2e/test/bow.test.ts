@@ -14,9 +14,11 @@ function picture(red: number, blue: number): PNG {
       const [right, up] = [(x + 0.5 - 160) / focal, (90 - y - 0.5) / focal]
       const turn = (35 * Math.PI) / 180
       const ahead = Math.cos(turn) - up * Math.sin(turn)
-      const away = (Math.atan2(Math.hypot(right, up * Math.cos(turn) + Math.sin(turn)), ahead) * 180) / Math.PI
+      const away =
+        (Math.atan2(Math.hypot(right, up * Math.cos(turn) + Math.sin(turn)), ahead) * 180) / Math.PI
       const isGround = up * Math.cos(radians(10)) + Math.sin(radians(10)) < 0
-      const of = (middle: number): number => (isGround ? 0 : 20 * Math.exp(-(((away - middle) / 0.6) ** 2)))
+      const of = (middle: number): number =>
+        isGround ? 0 : 20 * Math.exp(-(((away - middle) / 0.6) ** 2))
       png.data.set([120 + of(red), 120, 120 + of(blue), 255], 4 * (y * 320 + x))
     }
   return png

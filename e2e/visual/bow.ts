@@ -92,5 +92,5 @@ export function bowsIn(picture: PNG, view: BowView): Bows {
       if (Math.min(blue, beyond) - red > SEEN) found[name] -= ARC
     }
   }
-  return found
+  return { primary: Math.max(found.primary, 0), secondary: Math.max(found.secondary, 0) }
 }

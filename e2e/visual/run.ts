@@ -69,7 +69,7 @@ function writePng(file: string, png: PNG): number {
 const readPng = (file: string): PNG => PNG.sync.read(readFileSync(file))
 
 /** Least arcs of the bow in a shower, and of the one about it [°]. */
-const LEAST_BOWS = { primary: 36, secondary: 12 }
+const LEAST_BOWS = { primary: 72, secondary: 36 }
 
 /** What is wrong with the subject of a picture, if that can be told. */
 function wrongIn(name: string, picture: PNG): string | undefined {

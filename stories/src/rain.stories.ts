@@ -60,7 +60,7 @@ type Story = StoryObj<RainArgs>
 /** Curtains of rain under towers, where their columns are strongest; they slant as the wind grows with height. */
 export const Shower: Story = {}
 
-/** The sun low behind one's back: a bow where a shaft is sunlit, and none beside it. */
+/** The sun behind one's back: both bows where a shaft is sunlit, dark between them, and none beside it. */
 export const Bow: Story = {
   name: 'Bow in a shower',
   tags: ['screenshot'],

@@ -24,7 +24,7 @@ export interface View {
 }
 
 /** Elevation of the sun behind the camera of the bow [°]: the top of the arc stands at what is left to 42°. */
-export const BOW_SUN = 25
+export const BOW_SUN = 29
 
 const home = { longitude: 0, latitude: 0 }
 
@@ -47,7 +47,7 @@ export const VIEWS = {
     azimuth: 270,
     heading: 90,
     pitch: 10,
-    place: { longitude: 140.6316, latitude: 35.2626 }
+    place: { longitude: 140.6426, latitude: 35.2626 }
   },
   virga: {
     label: 'Virga',

@@ -1,10 +1,5 @@
 import type { AtmosphereView } from '@welkin/atmosphere'
-import {
-  CloudLayers,
-  cloudPreset,
-  precipitationShafts,
-  type CloudPresetName
-} from '@welkin/clouds'
+import { CloudLayers, cloudPreset, precipitationShafts, type CloudPresetName } from '@welkin/clouds'
 import { Vector3 } from 'three'
 import { float, int, vec4 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
