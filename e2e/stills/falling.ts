@@ -14,12 +14,17 @@ export const falling = [
   {
     name: 'shower-bow',
     about:
-      'a sun of 12° behind: the bow stands in the sunlit shaft, and ends at its edge and in shadow',
-    clouds: { preset: 'shower', coverage: 0.15 },
-    place: { longitude: 140.6798, latitude: 35.2496 },
+      'a sun of 29° behind: both bows stand in the sunlit shaft, the outer one with its colours the other way round, dark between them',
+    clouds: {
+      preset: 'shower',
+      coverage: 0.2,
+      layer: { baseAltitude: 1500, precipitation: { rate: 8 } }
+    },
+    place: { longitude: 140.6426, latitude: 35.2626 },
     altitude: 60,
-    sun: { elevation: 12, azimuth: 206 },
-    view: { azimuth: 60, pitch: 10 },
+    sun: { elevation: 29, azimuth: 270 },
+    view: { azimuth: 90, pitch: 10 },
+    fieldOfView: 62,
     land: 'hills'
   },
   {

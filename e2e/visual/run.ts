@@ -16,6 +16,8 @@ import { outputFolder, Report } from '../harness/report'
 import { replaceModules } from '../harness/replaceModules'
 import { serveStatic } from '../harness/serve'
 import { shadowSizePlugin } from '../harness/shadow-size'
+import { BOW_SUN, FIELD_OF_VIEW, VIEWS } from '../../stories/src/rainViews'
+import { bowsIn } from './bow'
 import { compare, isBlank } from './compare'
 
 const viewport = { width: 320, height: 180 }
@@ -66,6 +68,23 @@ function writePng(file: string, png: PNG): number {
 
 const readPng = (file: string): PNG => PNG.sync.read(readFileSync(file))
 
+/** Least arcs of the bow in a shower, and of the one about it [°]. */
+const LEAST_BOWS = { primary: 72, secondary: 36 }
+
+/** What is wrong with the subject of a picture, if that can be told. */
+function wrongIn(name: string, picture: PNG): string | undefined {
+  if (name !== 'rain-bow') return undefined
+  const { azimuth, heading, pitch } = VIEWS.bow
+  const { primary, secondary } = bowsIn(picture, {
+    fieldOfView: FIELD_OF_VIEW,
+    pitch,
+    sun: BOW_SUN,
+    aside: azimuth - heading
+  })
+  const isThere = primary >= LEAST_BOWS.primary && secondary >= LEAST_BOWS.secondary
+  return isThere ? undefined : `no bow: ${primary}° of it are seen, ${secondary}° of the outer one`
+}
+
 /**
  * Baselines are WebGPU's. Where WebGL's picture comes near to the tolerance it has one of its own:
  * what is smaller than a pixel depends on where in it the backends take their samples. An update
@@ -77,6 +96,12 @@ function judge(name: string, backend: Backend, actual: PNG, detail: string): voi
   const own = join(baselineFolder, `${name}.${backend}.png`)
   if (isBlank(actual)) {
     report.fail(label, 'the canvas is blank')
+    return
+  }
+  const wrong = wrongIn(name, actual)
+  if (wrong !== undefined) {
+    writePng(join(failuresFolder, `${name}.${backend}.actual.png`), actual)
+    report.fail(label, wrong)
     return
   }
   if (values.update && backend === 'webgpu') {

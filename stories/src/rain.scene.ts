@@ -6,81 +6,18 @@ import {
   cloudSkyLight,
   precipitationShafts
 } from '@welkin/clouds'
-import type { CloudLayerParameters, CloudPrecipitation, CloudPresetName } from '@welkin/clouds'
 import { MathUtils, PerspectiveCamera, Scene } from 'three'
 import { shadow } from 'three/tsl'
 import { Air } from './air'
 import { STILL_QUALITY } from './clouds/still'
 import { Explorer } from './moving/Explorer'
+import { FIELD_OF_VIEW, VIEWS, type View } from './rainViews'
 import { createRenderer, drawSettled, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
 
 /** Frames after which a still has settled. */
 const FRAMES = 4
-
-interface View {
-  readonly label: string
-  readonly clouds: CloudPresetName
-  /** Share of the sky that the first layer covers. */
-  readonly coverage: number
-  /** Other parameters of that layer, where the preset's are not meant. */
-  readonly layer?: Partial<CloudLayerParameters>
-  /** Other parameters of what falls. */
-  readonly fall?: Partial<CloudPrecipitation>
-  /** Azimuth of the sun, clockwise from north [°]. */
-  readonly azimuth: number
-  /** Azimuth that the camera looks to, clockwise from north [°]. */
-  readonly heading: number
-  /** Pitch of the camera [°]. */
-  readonly pitch: number
-  /** Place of the camera [°]. */
-  readonly place: { readonly longitude: number; readonly latitude: number }
-}
-
-const home = { longitude: 0, latitude: 0 }
-
-/** Weathers, and where the camera looks. */
-export const VIEWS = {
-  shower: {
-    label: 'Shower',
-    clouds: 'shower',
-    coverage: 0.3,
-    azimuth: 260,
-    heading: 0,
-    pitch: 10,
-    place: home
-  },
-  bow: {
-    label: 'Bow in a shower',
-    clouds: 'shower',
-    coverage: 0.15,
-    azimuth: 206,
-    heading: 60,
-    pitch: 10,
-    place: { longitude: 140.6798, latitude: 35.2496 }
-  },
-  virga: {
-    label: 'Virga',
-    clouds: 'altocumulus',
-    coverage: 0.12,
-    layer: { topAltitude: 4400, density: 0.006, weatherScale: 0.6, shapeScale: 0.8 },
-    azimuth: 350,
-    heading: 60,
-    pitch: 20,
-    fall: { share: 0.9, streaks: 2 },
-    place: { longitude: 20, latitude: 45 }
-  },
-  snow: {
-    label: 'Snow shower',
-    clouds: 'snowShower',
-    coverage: 0.1,
-    azimuth: 280,
-    heading: 20,
-    pitch: 9,
-    place: { longitude: 20, latitude: 45 }
-  }
-} as const satisfies Record<string, View>
 
 export interface RainArgs extends RendererArgs {
   view: keyof typeof VIEWS
@@ -103,7 +40,7 @@ export async function createRain(
   const renderer = await createRenderer(canvas, args.forceWebGL)
   const scene = new Scene()
   const view: View = VIEWS[args.view]
-  const camera = new PerspectiveCamera(62, 1, 1, 4e5)
+  const camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 1, 4e5)
   camera.position.y = 60
   const { pitch, heading } = view
   camera.rotation.set(MathUtils.degToRad(pitch), MathUtils.degToRad(-heading), 0, 'YXZ')

@@ -1,7 +1,8 @@
 import type { Meta, StoryObj } from '@storybook/html-vite'
 import { mount } from './mount'
-import { createRain, VIEWS } from './rain.scene'
+import { createRain } from './rain.scene'
 import type { RainArgs } from './rain.scene'
+import { BOW_SUN, VIEWS } from './rainViews'
 import { choiceOf, rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
@@ -59,11 +60,11 @@ type Story = StoryObj<RainArgs>
 /** Curtains of rain under towers, where their columns are strongest; they slant as the wind grows with height. */
 export const Shower: Story = {}
 
-/** The sun low behind one's back: a bow where a shaft is sunlit, and none beside it. */
+/** The sun behind one's back: both bows where a shaft is sunlit, dark between them, and none beside it. */
 export const Bow: Story = {
   name: 'Bow in a shower',
   tags: ['screenshot'],
-  args: { view: 'bow', sun: 12 }
+  args: { view: 'bow', sun: BOW_SUN, rate: 8, exposure: -0.5 }
 }
 
 /** Snow that evaporates below altocumulus in a low sun: tails that curve away with the wind, of which the heaviest reach far down. */

@@ -216,6 +216,10 @@ gpuTest(
   'lets rain, snow and hail fall where float64 does, as opaque as their rates say',
   async t => {
     const rates = [0.5, 3, 12, 60]
+    const [heaps, storms] = [
+      [1, 0, 0, 0],
+      [0, 0, 1, 0]
+    ] as [number, number, number, number][]
     const layer = {
       coverage: 0.8,
       shapeAmount: 0,
@@ -231,7 +235,9 @@ gpuTest(
     for (const rate of rates) {
       const [virgaDepth, hail] = [rate > 3 ? 900 : 0, rate === 60 ? 0.4 : 0]
       const falls = { rate, share: 0.7, freezingLevel: 600, virgaDepth, hail }
-      layers.at(0).precipitation = falls
+      const weatherWeights = rate === 12 ? storms : heaps
+      layers.at(0).set({ precipitation: falls, weatherWeights })
+      scene.update()
       medium.update(scene.field, { up: zenith } as AtmosphereView)
       const places = { ...state, layers: [layers.at(0).parameters] }
       const results = await evaluateOnGpu(scene.renderer, inputs, input =>

@@ -1,5 +1,11 @@
 import { SkyLightProbe, SunDirectionalLight } from '@welkin/atmosphere'
-import { CloudLayers, CloudLightTable, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import {
+  CloudLayers,
+  CloudLightTable,
+  cloudShadow,
+  cloudSkyLight,
+  precipitationShafts
+} from '@welkin/clouds'
 import { BoxGeometry, Mesh, MeshLambertMaterial } from 'three'
 import { shadow } from 'three/tsl'
 import { drawToFloat } from '../harness/atmosphere'
@@ -162,7 +168,9 @@ gpuTest('leaves no memory behind', async t => {
   const round = async (): Promise<string> => {
     // A leak does not need the whole bake.
     const noise = new SparseNoise(1)
-    const view = new CloudView(renderer, atmosphere, new CloudLayers([fog]), { noise, light })
+    const precipitation = precipitationShafts()
+    const layers = new CloudLayers([{ ...fog, precipitation: { rate: 1 } }])
+    const view = new CloudView(renderer, atmosphere, layers, { noise, light, precipitation })
     await view.draw(2)
     renderer.setSize(12, 7, false)
     view.node.quality = 'ultra'

@@ -1,7 +1,10 @@
 import type { AtmosphereView } from '@welkin/atmosphere'
-import { cloudPreset, precipitationShafts } from '@welkin/clouds'
-import { int, vec4 } from 'three/tsl'
+import { CloudLayers, cloudPreset, precipitationShafts, type CloudPresetName } from '@welkin/clouds'
+import { Vector3 } from 'three'
+import { float, int, vec4 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
+import { sampleLayer } from '../../../packages/clouds/src/density/tsl/sampleLayer'
+import type { Float, Int, Vec3 } from '../../../packages/clouds/src/tsl-types'
 import { layerAt } from '../../../packages/clouds/src/density/tsl/layer'
 import {
   footprintOf,
@@ -23,6 +26,25 @@ const SHIFT = 12
 /** Greatest mean error of the rank of columns from which it falls, and the least mean that the test means anything with [–]. */
 const RANK = 0.005
 const LEAST_RANK = 0.05
+
+/** Places all over the planet, and the width of what each stands for [m]. */
+const COUNT = 8192
+const FOOTPRINT = 50
+
+/** Greatest error of a share, over the share, and of the mean rate [–]. Storms crowd, and small cells blur. */
+const ERROR = 0.12
+
+/** Least part of the places where it rains hard that have the storm's cloud above them, at this height in its layer [–]. */
+const UNDER_CLOUD = 0.9
+const HEIGHT = 0.15
+
+/** Presets, their coverage, and the share that is asked for. */
+const asked = [
+  ['shower', 0.25, 0.25],
+  ['hailstorm', 0.25, 0.2],
+  ['snowShower', 0.25, 0.25],
+  ['altocumulus', 0.3, 0.5]
+] as const satisfies [CloudPresetName, number, number][]
 
 /** Heights of the camera, and the farthest places that are looked up [m]. */
 const views = [
@@ -151,4 +173,58 @@ gpuTest(
     map.dispose()
     scene.dispose()
   }
+)
+
+gpuTest(
+  'rain falls from the share of the clouds that is asked for, at the rate asked for, and under towers',
+  async t => {
+    const layers = new CloudLayers(
+      asked.map(([preset, coverage, share]) => {
+        const [{ parameters }] = cloudPreset(preset)
+        return { ...parameters, coverage, precipitation: { rate: 5, share } }
+      })
+    )
+    const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
+    const { renderer, field, viewpoint } = scene
+    const medium = precipitationShafts()
+    medium.update(field, scene.update())
+    // A spiral of even density, for each layer.
+    const inputs = Array.from({ length: COUNT * asked.length }, (_, i) => {
+      const z = (2 * (i % COUNT) + 1) / COUNT - 1
+      const [across, angle] = [Math.sqrt(1 - z * z), 2.399963 * (i % COUNT)]
+      const place = new Vector3(across * Math.cos(angle), across * Math.sin(angle), z)
+      place.multiplyScalar(field.radius.value).sub(viewpoint)
+      return [...place.toArray(), Math.floor(i / COUNT)].map(Math.fround)
+    })
+    const found = await evaluateOnGpu(renderer, inputs, input => {
+      const index = int(input.w.add(0.5)).toConst() as Int
+      const layer = layerAt(field, index)
+      const altitude = layer.baseAltitude.add(layer.thickness.mul(HEIGHT)).toConst() as Float
+      const { up } = field.view.localCoordinates(input.xyz.toConst() as unknown as Vec3)
+      const offset = input.xyz.add(up.mul(altitude)).toConst() as unknown as Vec3
+      const sample: CloudSample = { offset, altitude, up, distance: float(2000) }
+      const subpoint = subpointOffset(field, sample).toConst() as Vec3
+      const width = float(FOOTPRINT)
+      const background = weatherBackground(field, layer, subpoint, sample, width)
+      const column = fallColumn(field, layer, medium.fallOf(index), background, subpoint, width)
+      const cloud = sampleLayer(field, layer, background, sample, { detail: false })
+      return vec4(column.x, cloud.extinction, 0, 0)
+    })
+    const misses: string[] = []
+    for (const [i, [preset, coverage, share]] of asked.entries()) {
+      const own = Array.from({ length: COUNT }, (_, k) => 4 * (i * COUNT + k))
+      const wet = own.filter(k => found[k] > 0)
+      const got = wet.length / COUNT / coverage / share
+      const rate = mean(wet.map(k => 3 * found[k] ** 2))
+      const hard = wet.filter(k => found[k] > 0.7)
+      const under = hard.filter(k => found[k + 1] > 0).length / hard.length
+      const told = `${preset}: ${got.toFixed(3)} of the share, ${rate.toFixed(3)} of the rate, ${under.toFixed(3)} under clouds`
+      t.note(told)
+      const isWrong = Math.max(Math.abs(got - 1), Math.abs(rate - 1)) > ERROR
+      if (isWrong || under < UNDER_CLOUD) misses.push(told)
+    }
+    expectTrue(misses.length === 0, misses.join(', '))
+    scene.dispose()
+  },
+  { backends: ['webgpu'] }
 )

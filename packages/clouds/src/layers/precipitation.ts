@@ -8,7 +8,10 @@ export interface CloudPrecipitation {
    * 50. In the strongest columns it is three times as much.
    */
   readonly rate: number
-  /** Share of the clouded columns from which it falls, the strongest, in (0, 1]; default 0.5. */
+  /**
+   * Share of the clouded area from which it falls, in (0, 1]; default 0.5: under the strongest columns; of storms, that part of each, about
+   * its tower.
+   */
   readonly share?: number
   /**
    * Depth of fall in which rain of the given rate evaporates, in [0, 20,000] [m]: less leaves virga. Heavier rain reaches

@@ -116,7 +116,7 @@ function shadePixels(
 
 /**
  * Render targets and passes of a camera's clouds. A frame takes five passes: the weather around the camera, the
- * march of one pixel of each block, its light (before it, with most casters, {@link CastLight}, and where anything may fall, {@link FallPass}), the statistics of the cells between marched pixels, and the upscale, which blends them
+ * march of one pixel of each block, its light (before it, with most casters, {@link CastLight}, and while anything falls, {@link FallPass}), the statistics of the cells between marched pixels, and the upscale, which blends them
  * into the history of the frames before.
  */
 export class CloudRenderer {
@@ -134,7 +134,11 @@ export class CloudRenderer {
   readonly #cast: CastLight
   readonly #fall: FallPass | undefined
   readonly #march: FragmentPass
-  readonly #shade: FragmentPass
+  readonly #precipitation: PrecipitationShafts | undefined
+  /** Light without what falls, and with it. */
+  readonly #shades: readonly FragmentPass[]
+  /** False until both are compiled: rain begins without a stutter. */
+  #isCompiled = false
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
   /** Clouds of the pixels that this frame has marched, not lit. */
@@ -159,12 +163,12 @@ export class CloudRenderer {
     const [distances, shares, ray] = this.#marchedTarget.textures.map(textureNode)
     this.seen = { distances, shares, ray }
     this.#cast = new CastLight(scene, this.seen)
+    this.#precipitation = precipitation
     this.#fall = precipitation?.passOf(scene, this.seen, this.#cast)
-    this.#shade = new FragmentPass(
-      'Welkin.CloudsShade',
-      shadePixels(scene, this.seen, this.#cast, this.#fall)
-    )
-    for (const { material } of [this.#march, this.#shade]) {
+    const shade = (fall?: FallPass): FragmentPass =>
+      new FragmentPass('Welkin.CloudsShade', shadePixels(scene, this.seen, this.#cast, fall))
+    this.#shades = this.#fall ? [shade(), shade(this.#fall)] : [shade()]
+    for (const { material } of [this.#march, ...this.#shades]) {
       const key = material.customProgramCacheKey.bind(material)
       material.customProgramCacheKey = () => key() + kindsOf(field) + this.#cast.version
     }
@@ -211,8 +215,7 @@ export class CloudRenderer {
     this.#weatherMap.render(renderer, up)
     this.#march.render(renderer, this.#marchedTarget)
     this.#cast.render(renderer)
-    this.#fall?.render(renderer)
-    this.#shade.render(renderer, this.#shadedTarget)
+    this.#light(renderer)
     this.#gather.render(renderer, this.#cellsTarget)
     this.#current = 1 - this.#current
     const target = this.#accumulatedTargets[this.#current]
@@ -222,13 +225,25 @@ export class CloudRenderer {
     this.accumulated.distances.value = distances
   }
 
+  /** Lights what was marched, with what falls where anything does. */
+  #light(renderer: Renderer): void {
+    const [dry, wet] = this.#shades
+    const isWet = this.#precipitation?.isFalling
+    if (isWet || !this.#isCompiled) this.#fall?.render(renderer)
+    const last = isWet ? wet : dry
+    for (const shade of this.#isCompiled ? [last] : [dry, wet, last])
+      shade?.render(renderer, this.#shadedTarget)
+    this.#isCompiled = true
+  }
+
   /** Compiles passes with code for storms anew where layers of storms come or go, and the light's pass where casters do. */
   #compile(): void {
     const kinds = kindsOf(this.#field)
     const { version } = this.#cast
     if (kinds !== this.#kinds) this.#march.material.needsUpdate = true
     if (kinds !== this.#kinds || version !== this.#castVersion) {
-      this.#shade.material.needsUpdate = true
+      for (const { material } of this.#shades) material.needsUpdate = true
+      this.#isCompiled = false
       if (this.#fall) this.#fall.version = kinds + version
     }
     this.#kinds = kinds
@@ -237,11 +252,12 @@ export class CloudRenderer {
 
   /** Frees the render targets. */
   dispose(): void {
+    this.#isCompiled = false
     this.#weatherMap.dispose()
     this.#cast.dispose()
     this.#fall?.dispose()
     for (const target of this.#targets) target.dispose()
-    for (const pass of [this.#march, this.#shade, this.#gather, ...this.#upscale]) {
+    for (const pass of [this.#march, ...this.#shades, this.#gather, ...this.#upscale]) {
       pass.dispose()
     }
   }

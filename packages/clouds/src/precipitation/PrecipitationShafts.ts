@@ -23,7 +23,7 @@ import { fallColumnOf } from './cpu/fallColumn'
 import { DIFFRACTED, fallFloor, fallForm, STREAK_WIDTH } from './fallForm'
 import { fallenFrom, fallExtinctions } from './tsl/fall'
 import type { FallNodes } from './tsl/fallColumn'
-import { distanceAt, fallStretch, partAt, type FallStretch } from './tsl/fallStretch'
+import { distanceAt, FARTHEST, fallStretch, partAt, type FallStretch } from './tsl/fallStretch'
 import { CLOUD_RADIUS, lightPrecipitation } from './tsl/lightPrecipitation'
 import { LEAST_SEEN, marchPrecipitation } from './tsl/marchPrecipitation'
 
@@ -87,6 +87,8 @@ export class PrecipitationShafts {
     baseAltitude: number(),
     period: number(1)
   }
+  /** False where nothing falls, or all of it is too far below the camera to be seen: by the last `update`. */
+  isFalling = false
   #version = 0
   #state: readonly number[] = []
 
@@ -104,7 +106,7 @@ export class PrecipitationShafts {
    *
    * @returns Count of changes other than those of wind and camera.
    */
-  update({ layers, depthScale }: CloudField, { up }: AtmosphereView): number {
+  update({ layers, depthScale }: CloudField, { up, height }: AtmosphereView): number {
     let [ceiling, floor, most] = [NOWHERE, Infinity, 0]
     let shortest = LONGEST_STEP
     let [firstLayer, endLayer] = [CloudLayers.maxLayers, 0]
@@ -144,6 +146,7 @@ export class PrecipitationShafts {
       period.value = weather
       this.#width.value = MathUtils.lerp(period.value * CLOUD_RADIUS, DECK_WIDTH, layered.value)
     }
+    this.isFalling = endLayer > 0 && height < ceiling + FARTHEST
     this.#ceiling.value = ceiling
     this.#floor.value = Math.max(floor, NOWHERE)
     this.#shortest.value = shortest

@@ -35,6 +35,19 @@ export const fallForm = {
   fallBlur: 0.01
 } as const
 
+/** Constants of the columns from which something falls: tsl/fallColumn.ts. */
+export const columnForm = {
+  /**
+   * Part of the cube in the logit of the weather's distribution [–]: tails shorter than a normal distribution's. As counted over the
+   * planet; 0: less falls than asked for, the smaller the share (*Snow shower*).
+   */
+  tail: 0.017,
+  /** Exponent of the share of a storm that is nearer to its tower [–]: as counted, places near by are more than `stormPlaces` has. */
+  near: 0.94,
+  /** Radius of storms over the layer's thickness from which on all of the share falls [–]. 0: rain under small heaps (*Shower*). */
+  grown: 0.15
+} as const
+
 /** Width of coarse streaks over the period of a layer's shape [–]. */
 export const STREAK_WIDTH = 0.25
 

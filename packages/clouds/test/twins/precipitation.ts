@@ -1,5 +1,13 @@
 import { MathUtils, Vector3 } from 'three'
-import { extinctionForm, fallForm, streakBound, STRONGEST } from '../../src/precipitation/fallForm'
+import { stormPlaces } from '../../src/density/stormForm'
+import { stormCell } from '../../src/layers/storms'
+import {
+  columnForm,
+  extinctionForm,
+  fallForm,
+  streakBound,
+  STRONGEST
+} from '../../src/precipitation/fallForm'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
 import { dry } from '../../src/layers/precipitation'
 import { windAxis } from '../../src/layers/wind'
@@ -128,7 +136,19 @@ export function fallenRank(
     layer.shear * (base - altitude)
   const axis = windAxis(layer.wind, state.zenith ?? up, new Vector3())
   const source = position.clone().addScaledVector(axis.cross(up), lag)
-  const { sum, coverage } = weatherAt(state, noise, index, source, distance)
-  const fromTop = 1 - 1 / (1 + Math.exp(-1.702 * sum))
-  return Math.max(1 - fromTop / (coverage * share), 0)
+  const { sum, coverage, storm } = weatherAt(state, noise, index, source, distance)
+  let stronger = strongerShare(1.702 * sum) / strongerShare(Math.log(1 / coverage - 1))
+  if (storm !== undefined) {
+    const { topAltitude, baseAltitude } = layer
+    const nearer = (d: number): number =>
+      1 - Math.exp(-((d / stormCell(layer) / stormPlaces.scale) ** stormPlaces.power))
+    const grown = storm.radius / (topAltitude - baseAltitude) / columnForm.grown
+    const ofStorm = (nearer(storm.towerDistance) / nearer(storm.radius)) ** columnForm.near
+    stronger = ofStorm / MathUtils.smoothstep(grown, 0, 1)
+  }
+  return Math.max(1 - stronger / share, 0)
 }
+
+/** Share of columns whose weather is stronger than one of some odds, ln((1 − q) / q) for the share q of a normal distribution [–]. */
+const strongerShare = (odds: number): number =>
+  1 / (1 + Math.exp(odds) * Math.exp(columnForm.tail * odds ** 3))

@@ -108,6 +108,13 @@ export const cellLength = (layer: LayerNodes): Float =>
     .reciprocal()
     .toConst()
 
+/** Rank of a distance [m] from the nearest storm among all places of the planet, in [0, 1]: 1 at none. */
+export const stormRankAt = (layer: LayerNodes, distance: Float): Float => {
+  const { scale, power } = stormPlaces
+  const inScales = distance.div(cellLength(layer).mul(scale)).max(1e-4)
+  return inScales.pow(power).negate().exp()
+}
+
 /**
  * Radius of storms where a background of the weather is [m]: their rims have the rank that their coverage asks for.
  *

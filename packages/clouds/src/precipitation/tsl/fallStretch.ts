@@ -8,7 +8,7 @@ import type { Float, Vec4 } from '../../tsl-types'
 const LONGEST = 30_000
 
 /** Distance from which on nothing is marched [m]: shafts lie under their clouds then. */
-const FARTHEST = 150_000
+export const FARTHEST = 150_000
 
 /** First steps over those of an even march [–], for rays that begin among shafts. */
 const FIRST = 0.12

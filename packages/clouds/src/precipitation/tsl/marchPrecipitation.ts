@@ -22,9 +22,12 @@ import type { FallStretch } from './fallStretch'
 /** Most steps of a ray over the quality's `layerSteps`. Fewer: the far end of rain is coarse (*Rain and snow*). */
 const STEPS = 2.5
 
+/** Most steps of a ray where that makes fewer: rays are the wider apart then, so that they are cheap. Fewer: grain (`low`). */
+const LEAST_STEPS = 32
+
 /** `layerSteps` for which steps are as long as streaks ask for: with fewer they are longer, by at most `COARSEST`, with more shorter. */
 const FINE_STEPS = 18
-const COARSEST = 2
+const COARSEST = 1.3
 const FINEST = 0.25
 
 /** Length of a step over its distance from the camera, at least [–]. Greater: grain in far shafts (*Rain and snow*). */
@@ -92,7 +95,7 @@ export function marchPrecipitation(
 ): SeenPrecipitation {
   const { field, weatherMap, light, shadows, quality } = context
   const { view } = field
-  const most = quality.layerSteps.mul(STEPS).ceil().toConst() as Float
+  const most = quality.layerSteps.mul(STEPS).ceil().max(LEAST_STEPS).toConst() as Float
   const finest = float(FINE_STEPS).div(quality.layerSteps).clamp(FINEST, COARSEST)
   const least = shortest.mul(finest).toConst() as Float
   const end = from.add(span).toConst() as Float

@@ -1,0 +1,72 @@
+import type { CloudLayerParameters, CloudPrecipitation, CloudPresetName } from '@welkin/clouds'
+
+/** Vertical field of view [°]. */
+export const FIELD_OF_VIEW = 62
+
+/** A weather, and where the camera looks. */
+export interface View {
+  readonly label: string
+  readonly clouds: CloudPresetName
+  /** Share of the sky that the first layer covers. */
+  readonly coverage: number
+  /** Other parameters of that layer, where the preset's are not meant. */
+  readonly layer?: Partial<CloudLayerParameters>
+  /** Other parameters of what falls. */
+  readonly fall?: Partial<CloudPrecipitation>
+  /** Azimuth of the sun, clockwise from north [°]. */
+  readonly azimuth: number
+  /** Azimuth that the camera looks to, clockwise from north [°]. */
+  readonly heading: number
+  /** Pitch of the camera [°]. */
+  readonly pitch: number
+  /** Place of the camera [°]. */
+  readonly place: { readonly longitude: number; readonly latitude: number }
+}
+
+/** Elevation of the sun behind the camera of the bow [°]: the top of the arc stands at what is left to 42°. */
+export const BOW_SUN = 29
+
+const home = { longitude: 0, latitude: 0 }
+
+/** Weathers, and where the camera looks. */
+export const VIEWS = {
+  shower: {
+    label: 'Shower',
+    clouds: 'shower',
+    coverage: 0.3,
+    azimuth: 260,
+    heading: 0,
+    pitch: 10,
+    place: home
+  },
+  bow: {
+    label: 'Bow in a shower',
+    clouds: 'shower',
+    coverage: 0.2,
+    layer: { baseAltitude: 1500 },
+    azimuth: 270,
+    heading: 90,
+    pitch: 10,
+    place: { longitude: 140.6426, latitude: 35.2626 }
+  },
+  virga: {
+    label: 'Virga',
+    clouds: 'altocumulus',
+    coverage: 0.12,
+    layer: { topAltitude: 4400, density: 0.006, weatherScale: 0.6, shapeScale: 0.8 },
+    azimuth: 350,
+    heading: 60,
+    pitch: 20,
+    fall: { share: 0.9, streaks: 2 },
+    place: { longitude: 20, latitude: 45 }
+  },
+  snow: {
+    label: 'Snow shower',
+    clouds: 'snowShower',
+    coverage: 0.1,
+    azimuth: 280,
+    heading: 20,
+    pitch: 9,
+    place: { longitude: 20, latitude: 45 }
+  }
+} as const satisfies Record<string, View>
