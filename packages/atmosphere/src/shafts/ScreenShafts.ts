@@ -1,5 +1,5 @@
 import { Vector2 } from 'three'
-import { Fn, If, bool, float, mix, screenCoordinate, screenUV, uv, vec3, vec4 } from 'three/tsl'
+import { Fn, If, bool, float, mix, screenCoordinate, screenUV, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, NodeMaterial, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
@@ -31,8 +31,15 @@ const MESH_SAMPLES = 6
 /** Height in radii of the planet above which meshes have no shafts: from there one direction holds all rays of light. */
 const MAX_MESH_HEIGHT = 20
 
-/** Foreground at a place in the picture. */
-type SeenForeground = ReturnType<ForegroundLayer['seenAt']>
+/** Transmittance from which on a foreground is not seen, and part of a picture's air that is not. */
+const CLEAR = 0.99
+const UNSEEN = 1 - CLEAR
+
+/** Foreground at a place in the picture: its distance [m], and the part of the light from behind that passes. */
+interface SeenForeground {
+  readonly distance: Float
+  readonly transmittance: Float
+}
 
 /** End of a view ray: displacement in the mapped space of what gives its direction, its length, and how far one sees [m]. */
 interface RayEnd {
@@ -116,7 +123,7 @@ export class ScreenShafts implements ScreenShadows {
     const { source, air: lookUp } = shafts.view
     const most = Math.max(...lookUp.uniforms.linearSRGB.map(({ value }) => value.y))
     this.#gain.value = Math.max(most, 1e-30) * Math.max(...source.irradiance.value.toArray(), 1e-30)
-    this.grid.freePath.value = 1 / (Math.max(Math.min(...air), 1e-12) + fog)
+    this.grid.extinction.value = Math.max(Math.min(...air), 1e-12) + fog
     this.grid.render(renderer, shafts.version, (at, pixel) => this.#march(renderer, at, pixel))
   }
 
@@ -197,12 +204,27 @@ export class ScreenShafts implements ScreenShadows {
     return this.isMesh ? screenUV : uv()
   }
 
-  #lostUpTo(end: RayEnd): Vec3 {
-    const lost = this.grid.read(
-      this.#place,
-      around => this.#seenDistance(this.foreground?.seenAt(this.#place, around), end.distance),
-      distance => this.#litAir(this.#rayTo({ ...end, distance }))
-    )
+  #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
+    const { foreground, grid } = this
+    const beyond = grid.beyond(end.distance).toVar() as Float
+    let tolerance = float(0) as Float
+    let front: SeenForeground | undefined
+    if (foreground !== undefined) {
+      const passes = transmittance ?? foreground.transmittanceAt(this.#place)
+      const isSeen = passes.lessThan(CLEAR).toConst()
+      const distance = end.distance.toVar() as Float
+      front = { distance, transmittance: passes }
+      beyond.assign(beyond.max(this.#isForward))
+      If(isSeen, () => {
+        distance.assign(distance.min(foreground.distanceAt(this.#place, true)))
+        beyond.assign(mix(grid.beyond(distance), beyond, passes))
+      })
+      tolerance = isSeen.select(foreground.tolerance, 0).toConst() as Float
+    }
+    const lost = grid.read(this.#place, beyond, tolerance, nearer => {
+      front?.distance.mulAssign(nearer)
+      return this.#litUpTo(end, front, UNSEEN).seen
+    })
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -212,11 +234,13 @@ export class ScreenShafts implements ScreenShadows {
     return this.foreground === undefined && screens.hasForeground && !(this.isMesh && isForward)
   }
 
-  dim(color: Vec3): Vec3 {
+  dim(color: Vec3, transmittance?: Float): Vec3 {
     const left = color.toVar()
     if (this.#isDrawnByForeground) return left
     If(this.#strength.greaterThan(0), () => {
-      const lost = Fn(({ renderer }): Vec3 => this.#lostUpTo(this.#endIn(renderer, this.#place)))()
+      const lost = Fn(({ renderer }): Vec3 =>
+        this.#lostUpTo(this.#endIn(renderer, this.#place), transmittance)
+      )()
       // Clouds may also give light.
       left.subAssign(lost.min(left))
     })
@@ -239,23 +263,47 @@ export class ScreenShafts implements ScreenShadows {
     }
   }
 
-  /** Distance of what is seen [m]: on the logarithms' way from a foreground to what is behind, as far as that shows. */
-  #seenDistance(front: SeenForeground | undefined, distance: Float): Float {
-    if (front === undefined) return distance
-    const behind = front.transmittance.mul(this.#isForward.oneMinus())
-    return front.distance.min(distance).div(distance).pow(behind.oneMinus()).mul(distance).toConst()
+  /** Light of a ray's air without shadows, all of it and as much as is seen: parts from `least` on. */
+  #litUpTo(end: RayEnd, front: SeenForeground | undefined, least: number): { all: Vec3; seen: Vec3 } {
+    if (front === undefined) {
+      const all = this.#litAir(this.#rayTo(end))
+      return { all, seen: all }
+    }
+    const { distance, transmittance } = front
+    const behind = transmittance.mul(this.#isForward.oneMinus())
+    const parts = vec2(transmittance.oneMinus(), behind).toConst()
+    const all = vec3(0).toVar() as Vec3
+    const seen = vec3(0).toVar() as Vec3
+    loop('seen', 2, index => {
+      const isFront = index.equal(0)
+      const part = isFront.select(parts.x, parts.y).toConst()
+      If(part.greaterThanEqual(least), () => {
+        const to = isFront.select(distance, end.distance).toConst() as Float
+        all.assign(this.#litAir(this.#rayTo({ ...end, distance: to })))
+        seen.addAssign(all.mul(part))
+      })
+    })
+    return { all, seen }
   }
 
   /** Light that the ray of a pixel of the grid loses. */
   #march(renderer: Renderer, at: Vec2, pixel: Vec2): LostLight {
     const { view, shadowedAir, steps } = this.#shafts
-    const ray = this.#rayTo(this.#endIn(renderer, at))
-    const front = this.foreground?.seenAt(at)
+    const end = this.#endIn(renderer, at)
+    const ray = this.#rayTo(end)
+    const { distance } = ray
+    let beyond = this.grid.beyond(distance)
+    let front: SeenForeground | undefined
+    if (this.foreground !== undefined) {
+      const transmittance = this.foreground.transmittanceAt(at)
+      front = { distance: this.foreground.distanceAt(at, false).min(distance), transmittance }
+      beyond = mix(this.grid.beyond(front.distance), beyond.max(this.#isForward), transmittance)
+    }
     const { seenFrom, most } = this.#seen(front)
-    const seen = { ...ray, distance: ray.distance.min(most).toConst() as Float, seenFrom }
+    const seen = { ...ray, distance: distance.min(most).toConst() as Float, seenFrom }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
-    const distance = this.#seenDistance(front, ray.distance)
-    return { lost: this.#color(lost), lit: this.#litAir({ ...ray, distance }), distance }
+    const { all, seen: lit } = this.#litUpTo(end, front, 0)
+    return { lost: this.#color(lost), lit, all, distance, beyond: beyond.toConst() }
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
