@@ -99,8 +99,8 @@ export interface LostLight extends SeenAir {
  * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
  * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of
  * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and of four beside
- * silhouettes and edges of clouds. Those at its depth count most. One that is farther than all loses what they do: they know
- * nothing of the air beyond. So no pixel loses more than the light of its own air.
+ * silhouettes and edges of clouds. Those at its depth count most. One that is farther than all loses light up to their depth:
+ * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
  *
  * A depth is the distance at which even air has as much light as is seen: clouds hide some of it.
  */
@@ -229,9 +229,10 @@ export class LostLightGrid {
    * @param at - Its place in the picture.
    * @param beyond - See {@link SeenAir}.
    * @param tolerance - Octaves by which its depth may be off: it is as near to those around as that allows.
-   * @param lit - Light of its air that is seen; asked for in a branch, given the factor on its distance.
+   * @param lit - Light of its air that is seen, given a factor on the distance of what is seen, and the distance up to which
+   *   light is asked for [m]. Called in a branch.
    */
-  read(at: Vec2, beyond: Float, tolerance: Float, lit: (nearer: Float) => Vec3): Vec3 {
+  read(at: Vec2, beyond: Float, tolerance: Float, lit: (nearer: Float, most: Float) => Vec3): Vec3 {
     const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
     const own = this.#depthOf(beyond).toConst() as Float
@@ -248,6 +249,9 @@ export class LostLightGrid {
         .toConst() as Vec2
       const isSteep = mean.w.lessThan(STEEP_LIMIT)
       const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
+      // Steps of a depth show where the nearest to it counts for more than others.
+      const similar = tolerance.mul(2).max(SIMILAR).toConst()
+      const even = similar.mul(similar).toConst()
       // Light, and depth.
       const sums = vec4(0).toVar()
       const weights = float(0).toVar()
@@ -257,15 +261,14 @@ export class LostLightGrid {
         const other = sampleLevel0(this.#texels, at).toConst()
         const shown = this.#shownAt(other.w).toConst()
         const apart = log2(shown.div(part)).toConst()
-        const weight = shown.div(apart.mul(apart).add(SIMILAR ** 2)).toConst()
+        const weight = shown.div(apart.mul(apart).add(even)).toConst()
         sums.addAssign(other.mul(weight))
         weights.addAssign(weight)
       })
       sums.divAssign(weights)
-      const light = lit(nearer(sums.w)).toConst()
-      const around = mean.rgb.mul(this.#shownAt(sums.w).div(LIGHT_SCALE)).min(light)
-      const isFarther = own.sub(sums.w).div(SAME_DEPTH).sub(1).clamp()
-      lost.assign(mix(sums.rgb.mul(light), around, isFarther))
+      const farther = sums.w.sub(own).add(2 * SAME_DEPTH)
+      const most = sums.w.add(farther.clamp(0, SAME_DEPTH)).exp2() as Float
+      lost.assign(lit(nearer(sums.w), most).mul(sums.rgb))
     })
     return lost
   }

@@ -221,9 +221,10 @@ export class ScreenShafts implements ScreenShadows {
       })
       tolerance = isSeen.select(foreground.tolerance, 0).toConst() as Float
     }
-    const lost = grid.read(this.#place, beyond, tolerance, nearer => {
-      front?.distance.mulAssign(nearer)
-      return this.#litUpTo(end, front, UNSEEN).seen
+    const lost = grid.read(this.#place, beyond, tolerance, (nearer, most) => {
+      const lit = { ...end, distance: end.distance.min(most).toConst() as Float }
+      front?.distance.assign(front.distance.mul(nearer).min(most))
+      return this.#litUpTo(lit, front, UNSEEN).seen
     })
     return lost.mul(this.#gain.mul(this.#strength))
   }
