@@ -21,7 +21,7 @@ const SAME_DEPTH = 0.35
 const NEAR_MEAN = 0.2
 
 /** Part of the light of air that shadows take at most where there are none to speak of. Greater: halos at silhouettes and at edges of clouds. */
-const LEAST_LOST = 0.01
+const LEAST_LOST = 5e-4
 
 /** Octaves beyond all depths: those of means where next to nothing is lost, where light is steep, and of pixels whose grounds are at different depths. */
 const LIT_DEPTH = 40

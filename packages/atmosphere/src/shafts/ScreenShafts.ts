@@ -1,5 +1,5 @@
 import { Vector2 } from 'three'
-import { Fn, If, bool, float, mix, screenCoordinate, screenUV, uv, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, If, bool, float, mix, screenCoordinate, screenUV, uv, vec3, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, NodeMaterial, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
@@ -16,8 +16,9 @@ import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
 import { LostLightGrid, type LostLight } from './LostLightGrid'
+import { seenLight, type SeenForeground } from './tsl/seenLight'
 import { shadowAt, type ShaftRay } from './tsl/shadowsAlong'
-import { distanceOf, FAR } from './tsl/without'
+import { distanceOf } from './tsl/without'
 import { ditheredDark } from './tsl/polarMap'
 import { screenRay } from '../view/tsl/screenRay'
 import { DepthRays } from '../view/DepthRays'
@@ -31,15 +32,8 @@ const MESH_SAMPLES = 6
 /** Height in radii of the planet above which meshes have no shafts: from there one direction holds all rays of light. */
 const MAX_MESH_HEIGHT = 20
 
-/** Transmittance from which on a foreground is not seen, and part of a picture's air that is not. */
+/** Transmittance from which on a foreground is not seen. */
 const CLEAR = 0.99
-const UNSEEN = 1 - CLEAR
-
-/** Foreground at a place in the picture: its distance [m], and the part of the light from behind that passes. */
-interface SeenForeground {
-  readonly distance: Float
-  readonly transmittance: Float
-}
 
 /** End of a view ray: displacement in the mapped space of what gives its direction, its length, and how far one sees [m]. */
 interface RayEnd {
@@ -206,14 +200,14 @@ export class ScreenShafts implements ScreenShadows {
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
     const { foreground, grid } = this
-    const beyond = grid.beyond(end.distance).toVar() as Float
-    let tolerance = float(0) as Float
-    let front: SeenForeground | undefined
+    const distance = end.distance.toVar() as Float
+    const beyond = grid.beyond(distance).toVar() as Float
+    const ray = this.#rayTo(end)
+    let [tolerance, front]: [Float, SeenForeground?] = [float(0)]
     if (foreground !== undefined) {
       const passes = transmittance ?? foreground.transmittanceAt(this.#place)
+      front = this.#frontAt(distance, passes)
       const isSeen = passes.lessThan(CLEAR).toConst()
-      const distance = end.distance.toVar() as Float
-      front = { distance, transmittance: passes }
       beyond.assign(beyond.max(this.#isForward))
       If(isSeen, () => {
         distance.assign(distance.min(foreground.distanceAt(this.#place, true)))
@@ -222,9 +216,9 @@ export class ScreenShafts implements ScreenShadows {
       tolerance = isSeen.select(foreground.tolerance, 0).toConst() as Float
     }
     const lost = grid.read(this.#place, beyond, tolerance, (nearer, most) => {
-      const lit = { ...end, distance: end.distance.min(most).toConst() as Float }
-      front?.distance.assign(front.distance.mul(nearer).min(most))
-      return this.#litUpTo(lit, front, UNSEEN).seen
+      distance.assign(distance.mul(nearer).min(most))
+      const to = ray.distance.min(most).toConst() as Float
+      return seenLight(to, front, this.#lightOn(ray), 1 - CLEAR).seen
     })
     return lost.mul(this.#gain.mul(this.#strength))
   }
@@ -248,62 +242,36 @@ export class ScreenShafts implements ScreenShadows {
     return left
   }
 
-  /** Part of the light from a distance that the picture has, and the distance beyond which it has none [m]. */
-  #seen(front: SeenForeground | undefined): {
-    seenFrom?: (distance: Float) => Float
-    most: Float
-  } {
-    if (front === undefined) return { most: float(FAR) }
-    const { distance, transmittance } = front
-    // Behind the foreground the shadows of materials are dimmed with them.
-    const before = transmittance.mul(this.#isForward).oneMinus().toConst() as Float
+  /** A foreground of a pixel: behind it the shadows of materials are dimmed with them. */
+  #frontAt(distance: Float, transmittance: Float): SeenForeground {
     const behind = transmittance.mul(this.#isForward.oneMinus()).toConst() as Float
-    return {
-      seenFrom: from => from.lessThan(distance).select(before, behind),
-      most: behind.greaterThan(MIN_TRANSMITTANCE).select(FAR, distance).toConst()
-    }
-  }
-
-  /** Light of a ray's air without shadows, all of it and as much as is seen: parts from `least` on. */
-  #litUpTo(end: RayEnd, front: SeenForeground | undefined, least: number): { all: Vec3; seen: Vec3 } {
-    if (front === undefined) {
-      const all = this.#litAir(this.#rayTo(end))
-      return { all, seen: all }
-    }
-    const { distance, transmittance } = front
-    const behind = transmittance.mul(this.#isForward.oneMinus())
-    const parts = vec2(transmittance.oneMinus(), behind).toConst()
-    const all = vec3(0).toVar() as Vec3
-    const seen = vec3(0).toVar() as Vec3
-    loop('seen', 2, index => {
-      const isFront = index.equal(0)
-      const part = isFront.select(parts.x, parts.y).toConst()
-      If(part.greaterThanEqual(least), () => {
-        const to = isFront.select(distance, end.distance).toConst() as Float
-        all.assign(this.#litAir(this.#rayTo({ ...end, distance: to })))
-        seen.addAssign(all.mul(part))
-      })
-    })
-    return { all, seen }
+    return { distance, before: transmittance.oneMinus(), behind }
   }
 
   /** Light that the ray of a pixel of the grid loses. */
   #march(renderer: Renderer, at: Vec2, pixel: Vec2): LostLight {
     const { view, shadowedAir, steps } = this.#shafts
-    const end = this.#endIn(renderer, at)
-    const ray = this.#rayTo(end)
+    const { foreground, grid } = this
+    const ray = this.#rayTo(this.#endIn(renderer, at))
     const { distance } = ray
-    let beyond = this.grid.beyond(distance)
+    let seen: ShaftRay = ray
+    let beyond = grid.beyond(distance)
     let front: SeenForeground | undefined
-    if (this.foreground !== undefined) {
-      const transmittance = this.foreground.transmittanceAt(at)
-      front = { distance: this.foreground.distanceAt(at, false).min(distance), transmittance }
-      beyond = mix(this.grid.beyond(front.distance), beyond.max(this.#isForward), transmittance)
+    if (foreground !== undefined) {
+      const passes = foreground.transmittanceAt(at)
+      const nearest = foreground.distanceAt(at, false).min(distance).toConst() as Float
+      front = this.#frontAt(nearest, passes)
+      beyond = mix(grid.beyond(nearest), beyond.max(this.#isForward), passes)
+      const { behind } = front
+      const before = front.before.add(behind).toConst() as Float
+      seen = {
+        ...ray,
+        distance: behind.greaterThan(MIN_TRANSMITTANCE).select(distance, nearest).toConst(),
+        seenFrom: from => from.lessThan(nearest).select(before, behind)
+      }
     }
-    const { seenFrom, most } = this.#seen(front)
-    const seen = { ...ray, distance: distance.min(most).toConst() as Float, seenFrom }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
-    const { all, seen: lit } = this.#litUpTo(end, front, 0)
+    const { all, seen: lit } = seenLight(distance, front, this.#lightOn(ray))
     return { lost: this.#color(lost), lit, all, distance, beyond: beyond.toConst() }
   }
 
@@ -341,7 +309,11 @@ export class ScreenShafts implements ScreenShadows {
     return unclampedSRGB(air.uniforms, light.mul(source.irradiance)).div(this.#gain).toConst()
   }
 
-  /** Light of the air on a ray without shadows, as the grid keeps it. */
+  /** Light of the air on a ray up to a distance without shadows, as the grid keeps it. */
+  #lightOn(ray: ShaftRay): (distance: Float) => Vec3 {
+    return distance => this.#litAir({ ...ray, distance })
+  }
+
   #litAir(ray: ShaftRay): Vec3 {
     const { cosView, cosViewLight, distance } = ray
     const { air, volume, viewpoint } = this.#shafts.view
