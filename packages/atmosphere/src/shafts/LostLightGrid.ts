@@ -31,7 +31,7 @@ const APART_DEPTH = 6e4
 /** Octaves that none is beyond but means marked as apart. */
 const STEEP_LIMIT = 1100
 
-/** Octaves of the light of air by which pixels differ that weigh half as much as those at one depth. Greater: halos at silhouettes. */
+/** Octaves of depth by which pixels differ that weigh half as much as those at one depth. Greater: halos at silhouettes. */
 const SIMILAR = 0.02
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
@@ -218,11 +218,6 @@ export class LostLightGrid {
     return log2(shownOf(beyond).div(beyond.mul(this.extinction)))
   }
 
-  /** Part of the light of even air that is seen up to a depth [octaves]. */
-  #shownAt(depth: Float): Float {
-    return shownOf(this.beyond(depth.exp2() as Float))
-  }
-
   /**
    * Light that a pixel loses, as {@link LostLight} has it.
    *
@@ -236,10 +231,9 @@ export class LostLightGrid {
     const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
     const own = this.#depthOf(beyond).toConst() as Float
-    const part = shownOf(beyond).toConst()
     const nearer = (depth: Float): Float =>
       depth.sub(own).clamp(tolerance.negate(), tolerance).mul(Math.LN2).add(1)
-    const lost = mean.rgb.mul(part.mul(nearer(mean.w)).div(LIGHT_SCALE)).toVar() as Vec3
+    const lost = mean.rgb.mul(shownOf(beyond).mul(nearer(mean.w)).div(LIGHT_SCALE)).toVar() as Vec3
     const isLit = mean.w.sub(LIT_DEPTH).abs().lessThan(NEAR_MEAN)
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN).and(isLit.not()), () => {
       const size = this.#gridSize
@@ -259,8 +253,8 @@ export class LostLightGrid {
         const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
         const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
         const other = sampleLevel0(this.#texels, at).toConst()
-        const shown = this.#shownAt(other.w).toConst()
-        const apart = log2(shown.div(part)).toConst()
+        const apart = other.w.sub(own).toConst()
+        const shown = shownOf(this.beyond(other.w.exp2() as Float))
         const weight = shown.div(apart.mul(apart).add(even)).toConst()
         sums.addAssign(other.mul(weight))
         weights.addAssign(weight)
