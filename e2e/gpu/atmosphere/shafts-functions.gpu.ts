@@ -1,6 +1,6 @@
 import { Vector3 } from 'three'
 import { float, vec2, vec3, vec4 } from 'three/tsl'
-import { LostLightGrid } from '../../../packages/atmosphere/src/shafts/LostLightGrid'
+import { LostLightGrid, type LostLight } from '../../../packages/atmosphere/src/shafts/LostLightGrid'
 import {
   columnAt,
   lightRayAt,
@@ -8,7 +8,7 @@ import {
   type PolarFrame
 } from '../../../packages/atmosphere/src/shafts/tsl/polarMap'
 import { warpedSteps } from '../../../packages/atmosphere/src/shafts/tsl/warpedSteps'
-import type { Float, Vec3 } from '../../../packages/atmosphere/src/tsl-types'
+import type { Float, Vec2, Vec3 } from '../../../packages/atmosphere/src/tsl-types'
 import { warpedDistance } from '../../../packages/atmosphere/test/twins/shafts/warpedSteps'
 import { random } from '../harness/atmosphere'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -119,11 +119,14 @@ gpuTest(
     const [width, height, part] = [48, 30, 0.25]
     const grid = new LostLightGrid()
     grid.resize(width, height, 2)
-    // Neighbours are at other depths, so that none are mixed.
-    grid.render(renderer, 1, (_, pixel) => {
+    // Neighbours are at other depths and in other light, so that none are mixed.
+    const march = (_: Vec2, pixel: Vec2): LostLight => {
       const isFar = pixel.x.add(pixel.y).mod(2).greaterThan(0.5)
-      return { lost: vec3(part), lit: vec3(1), distance: isFar.select(1e4, 100).toConst() }
-    })
+      const distance = isFar.select(1e4, 1000).toConst() as Float
+      const lit = vec3(distance.div(1e4)).toConst() as Vec3
+      return { lost: lit.mul(part), lit, all: lit, distance, beyond: grid.beyond(distance) }
+    }
+    grid.render(renderer, 1, march)
     // Rounding puts places a little beyond the middles of the first and the last pixels.
     const places = [0.5 - 1e-4, 0.5, width / 3, width - 0.5, width - 0.5 + 1e-4].flatMap(x =>
       [0.5 - 1e-4, 0.5, height / 3, height - 0.5, height - 0.5 + 1e-4].map(y => [
@@ -133,14 +136,11 @@ gpuTest(
     )
     const results = await evaluateOnGpu(
       renderer,
-      places.map(([x, y]) => [x, y, 1000, 0]),
+      // Nearer than all.
+      places.map(([x, y]) => [x, y, 100, 0]),
       ({ x, y, z }) =>
         vec4(
-          grid.read(
-            vec2(x, y),
-            () => z,
-            () => vec3(2)
-          ),
+          grid.read(vec2(x, y), grid.beyond(z), float(0), () => vec3(2)),
           0
         )
     )

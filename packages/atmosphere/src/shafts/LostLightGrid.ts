@@ -14,25 +14,25 @@ import {
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 
-/**
- * Octaves of depth by which pixels may differ and still share light, and by which they share none. Greater: halos at
- * silhouettes; smaller: the march's pixels show on slopes (*Towers in haze*).
- */
+/** Octaves of depth by which pixels may differ and still share light. Smaller: the march's pixels show on slopes (*Towers in haze*). */
 const SAME_DEPTH = 0.35
-const OTHER_DEPTH = 0.8
 
-/** Octaves from a pixel's depth to that of pixels around, which are at one depth. */
+/** Octaves by which a pixel may be farther than those around, and take their light. */
 const NEAR_MEAN = 0.2
 
-/** Depth that marks means of pixels at different depths: none is near it [octaves]. */
+/** Part of the light of air that shadows take at most where there are none to speak of. Greater: halos at silhouettes and at edges of clouds. */
+const LEAST_LOST = 5e-4
+
+/** Octaves beyond all depths: those of means where next to nothing is lost, where light is steep, and of pixels whose grounds are at different depths. */
+const LIT_DEPTH = 40
+const STEEP_DEPTH = 1024
 const APART_DEPTH = 6e4
 
-/** Summand of the depth that marks means where light is steep; and limit that marked depths are below [octaves]. */
-const STEEP_DEPTH = 64
-const STEEP_LIMIT = 128
+/** Octaves that none is beyond but means marked as apart. */
+const STEEP_LIMIT = 1100
 
-/** Least weight in the bilateral upsampling: that of pixels of another depth. */
-const MIN_WEIGHT = 1e-3
+/** Octaves of depth by which pixels differ that weigh half as much as those at one depth. Greater: halos at silhouettes. */
+const SIMILAR = 0.02
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
@@ -42,6 +42,9 @@ const MAX_KEPT = 6e4
 
 /** Scale of light in the targets. */
 const LIGHT_SCALE = RADIANCE_SCALE / 8
+
+/** Least part of the light of even air that is seen. */
+const MIN_PART = 1e-7
 
 /** Greatest light that is mixed [octaves]. */
 const MAX_MIXED = Math.log2(MAX_KEPT) - 4
@@ -60,8 +63,11 @@ function partsOf({ lost, lit }: LostLight): Vec3 {
   const all = luminance(lit).max(MIN_LIGHT).toConst()
   const isBright = vec3(step(all.mul(PALE), lit)).toConst()
   const [taken, whole] = [mix(vec3(luminance(lost)), lost, isBright), mix(vec3(all), lit, isBright)]
-  return taken.div(whole).clamp(-MAX_KEPT, MAX_KEPT)
+  return taken.div(whole).clamp(-MAX_KEPT, 1)
 }
+
+/** Part of the light of even air that is seen, of what lies beyond. */
+const shownOf = (beyond: Float): Float => beyond.oneMinus().max(MIN_PART)
 
 /** First or last in each direction, of four by their number. */
 function cornerOf(index: Int): Vec2 {
@@ -69,14 +75,21 @@ function cornerOf(index: Int): Vec2 {
   return vec2(float(index).sub(row.mul(2)), row)
 }
 
+/** Air of a ray, as far as a picture shows it. */
+export interface SeenAir {
+  /** Distance to what was drawn [m]. */
+  readonly distance: Float
+  /** Part of the light of even air without end that lies beyond what is seen: see {@link LostLightGrid.beyond}. */
+  readonly beyond: Float
+}
+
 /** Light of a ray. */
-export interface LostLight {
+export interface LostLight extends SeenAir {
   /** Light that it loses, linear sRGB of about that for unit irradiance. */
   readonly lost: Vec3
-  /** Light of its air if nothing cast shadows, likewise. */
+  /** Light of its air that is seen if nothing cast shadows, likewise; and all of it, up to what was drawn. */
   readonly lit: Vec3
-  /** Distance to what is seen [m]. */
-  readonly distance: Float
+  readonly all: Vec3
 }
 
 /**
@@ -85,11 +98,14 @@ export interface LostLight {
  *
  * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
  * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of
- * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and beside silhouettes of
- * four at their depth.
+ * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and of four beside
+ * silhouettes and edges of clouds. Those at its depth count most. One that is farther than all loses light up to their depth:
+ * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
+ *
+ * A depth is the distance at which even air has as much light as is seen: clouds hide some of it.
  */
 export class LostLightGrid {
-  /** Lost light with log₂ of the light that there is; its part of that with log₂ of the distance. */
+  /** Lost light with log₂ of the light that there is; its part of that with log₂ of the depth. */
   readonly #marched: RenderTarget
   readonly target: RenderTarget
   readonly #lost: TextureNode
@@ -105,8 +121,8 @@ export class LostLightGrid {
   readonly #offset = vector2()
   /** Reciprocal of the pixels of the picture from one that is marched to the next. */
   readonly #density = number(1)
-  /** Longest mean free path in the air at the camera [m]. Shorter: dark pixels along the horizon (*Ridge at sunrise*). */
-  readonly freePath = number(1)
+  /** Extinction of the air at the camera, the least of all colours [1/m]. Greater: dark pixels along the horizon (*Ridge at sunrise*). */
+  readonly extinction = number(1)
   #passes: readonly FragmentPass[] = []
   #compiled = -1
 
@@ -145,11 +161,12 @@ export class LostLightGrid {
         const pixel = uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
         const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
         const found = march(at, pixel)
-        const { lost, lit, distance } = found
-        const scale = float(LIGHT_SCALE).div(this.#growth(distance)).toConst()
-        const light = log2(luminance(lit).max(MIN_LIGHT).mul(scale))
+        const { lost, all, distance, beyond } = found
+        const scale = float(LIGHT_SCALE).div(shownOf(beyond)).toConst()
+        const growth = this.beyond(distance).oneMinus()
+        const light = log2(luminance(all).max(MIN_LIGHT).mul(LIGHT_SCALE).div(growth))
         lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), light))
-        partsOut.assign(vec4(partsOf(found), log2(distance)))
+        partsOut.assign(vec4(partsOf(found), this.#depthOf(beyond)))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -170,46 +187,55 @@ export class LostLightGrid {
     If(texel.x.greaterThan(size.x.add(1.5)), () => {
       result.assign(read(this.#parts, texel.sub(vec2(size.x.add(1.5), -0.5)).toConst()))
     }).Else(() => {
-      const least = vec2(APART_DEPTH).toVar()
-      const most = vec2(-APART_DEPTH).toVar()
+      // Depth, light of the air, light that is lost.
+      const least = vec3(APART_DEPTH).toVar()
+      const most = vec3(-APART_DEPTH).toVar()
       loop('corner', 4, index => {
         const at = texel.add(cornerOf(index)).sub(0.5).toConst() as Vec2
         const [lost, parts] = [read(this.#lost, at), read(this.#parts, at)]
         result.addAssign(vec4(lost.rgb, parts.w).mul(0.25))
-        const both = vec2(parts.w, lost.w).toConst()
-        least.assign(least.min(both))
-        most.assign(most.max(both))
+        const each = vec3(parts.w, lost.w, luminance(lost.rgb)).toConst()
+        least.assign(least.min(each))
+        most.assign(most.max(each))
       })
       const apart = most.sub(least).toConst()
-      const isMixed = apart.y.lessThan(MIXED_OCTAVES).and(most.y.lessThan(MAX_MIXED))
-      const depth = result.w.add(isMixed.select(0, STEEP_DEPTH))
-      result.w.assign(apart.x.lessThan(SAME_DEPTH).select(depth, APART_DEPTH))
+      const isEven = apart.y.lessThan(MIXED_OCTAVES).and(most.y.lessThan(MAX_MIXED))
+      const isLit = most.z.max(least.z.negate()).lessThan(most.y.exp2().mul(LEAST_LOST))
+      const depth = result.w.add(isEven.select(0, STEEP_DEPTH))
+      const marked = apart.x.lessThan(SAME_DEPTH).select(depth, APART_DEPTH)
+      result.w.assign(isLit.select(LIT_DEPTH, marked))
     })
     return result
   }
 
-  /**
-   * Growth of the light of air with distance, about as that of even air: light over it is about the same for pixels
-   * whose distances differ a little, and is what they share.
-   */
-  #growth(distance: Float): Float {
-    return distance.div(distance.add(this.freePath))
+  /** Part of the light of even air without end that lies beyond a distance [m]. */
+  beyond(distance: Float): Float {
+    return distance.mul(this.extinction).add(1).reciprocal()
+  }
+
+  /** log₂ of the distance beyond which a part lies [m]. */
+  #depthOf(beyond: Float): Float {
+    return log2(shownOf(beyond).div(beyond.mul(this.extinction)))
   }
 
   /**
    * Light that a pixel loses, as {@link LostLight} has it.
    *
    * @param at - Its place in the picture.
-   * @param distanceBy - See {@link LostLight}; given log₂ of the distance of pixels around, or what is near to no distance.
-   * @param lit - See {@link LostLight}; asked for in a branch.
+   * @param beyond - See {@link SeenAir}.
+   * @param tolerance - Octaves by which its depth may be off: it is as near to those around as that allows.
+   * @param lit - Light of its air that is seen, given a factor on the distance of what is seen, and the distance up to which
+   *   light is asked for [m]. Called in a branch.
    */
-  read(at: Vec2, distanceBy: (around: Float) => Float, lit: (distance: Float) => Vec3): Vec3 {
+  read(at: Vec2, beyond: Float, tolerance: Float, lit: (nearer: Float, most: Float) => Vec3): Vec3 {
     const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
-    const distance = distanceBy(mean.w.sub(step(STEEP_DEPTH, mean.w).mul(STEEP_DEPTH)))
-    const own = log2(distance).toConst() as Float
-    const lost = mean.rgb.mul(this.#growth(distance).div(LIGHT_SCALE)).toVar() as Vec3
-    If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN), () => {
+    const own = this.#depthOf(beyond).toConst() as Float
+    const nearer = (depth: Float): Float =>
+      depth.sub(own).clamp(tolerance.negate(), tolerance).mul(Math.LN2).add(1)
+    const lost = mean.rgb.mul(shownOf(beyond).mul(nearer(mean.w)).div(LIGHT_SCALE)).toVar() as Vec3
+    const isLit = mean.w.sub(LIT_DEPTH).abs().lessThan(NEAR_MEAN)
+    If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN).and(isLit.not()), () => {
       const size = this.#gridSize
       const place = middle
         .div(this.#texelSize)
@@ -217,23 +243,26 @@ export class LostLightGrid {
         .toConst() as Vec2
       const isSteep = mean.w.lessThan(STEEP_LIMIT)
       const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
+      // Steps of a depth show where the nearest to it counts for more than others.
+      const similar = tolerance.mul(2).max(SIMILAR).toConst()
+      const even = similar.mul(similar).toConst()
+      // Light, and depth.
+      const sums = vec4(0).toVar()
       const weights = float(0).toVar()
-      lost.assign(vec3(0))
       loop('corner', 4, index => {
         const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
         const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
         const other = sampleLevel0(this.#texels, at).toConst()
-        const weight = other.w
-          .sub(own)
-          .abs()
-          .sub(OTHER_DEPTH)
-          .div(SAME_DEPTH - OTHER_DEPTH)
-          .clamp(MIN_WEIGHT, 1)
-          .toConst()
-        lost.addAssign(other.rgb.mul(weight))
+        const apart = other.w.sub(own).toConst()
+        const shown = shownOf(this.beyond(other.w.exp2() as Float))
+        const weight = shown.div(apart.mul(apart).add(even)).toConst()
+        sums.addAssign(other.mul(weight))
         weights.addAssign(weight)
       })
-      lost.mulAssign(lit(distance).div(weights))
+      sums.divAssign(weights)
+      const farther = sums.w.sub(own).add(2 * SAME_DEPTH)
+      const most = sums.w.add(farther.clamp(0, SAME_DEPTH)).exp2() as Float
+      lost.assign(lit(nearer(sums.w), most).mul(sums.rgb))
     })
     return lost
   }

@@ -16,8 +16,9 @@ import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
 import { LostLightGrid, type LostLight } from './LostLightGrid'
+import { seenLight, type SeenForeground } from './tsl/seenLight'
 import { shadowAt, type ShaftRay } from './tsl/shadowsAlong'
-import { distanceOf, FAR } from './tsl/without'
+import { distanceOf } from './tsl/without'
 import { ditheredDark } from './tsl/polarMap'
 import { screenRay } from '../view/tsl/screenRay'
 import { DepthRays } from '../view/DepthRays'
@@ -31,8 +32,8 @@ const MESH_SAMPLES = 6
 /** Height in radii of the planet above which meshes have no shafts: from there one direction holds all rays of light. */
 const MAX_MESH_HEIGHT = 20
 
-/** Foreground at a place in the picture. */
-type SeenForeground = ReturnType<ForegroundLayer['seenAt']>
+/** Transmittance from which on a foreground is not seen. */
+const CLEAR = 0.99
 
 /** End of a view ray: displacement in the mapped space of what gives its direction, its length, and how far one sees [m]. */
 interface RayEnd {
@@ -116,7 +117,7 @@ export class ScreenShafts implements ScreenShadows {
     const { source, air: lookUp } = shafts.view
     const most = Math.max(...lookUp.uniforms.linearSRGB.map(({ value }) => value.y))
     this.#gain.value = Math.max(most, 1e-30) * Math.max(...source.irradiance.value.toArray(), 1e-30)
-    this.grid.freePath.value = 1 / (Math.max(Math.min(...air), 1e-12) + fog)
+    this.grid.extinction.value = Math.max(Math.min(...air), 1e-12) + fog
     this.grid.render(renderer, shafts.version, (at, pixel) => this.#march(renderer, at, pixel))
   }
 
@@ -197,12 +198,28 @@ export class ScreenShafts implements ScreenShadows {
     return this.isMesh ? screenUV : uv()
   }
 
-  #lostUpTo(end: RayEnd): Vec3 {
-    const lost = this.grid.read(
-      this.#place,
-      around => this.#seenDistance(this.foreground?.seenAt(this.#place, around), end.distance),
-      distance => this.#litAir(this.#rayTo({ ...end, distance }))
-    )
+  #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
+    const { foreground, grid } = this
+    const distance = end.distance.toVar() as Float
+    const beyond = grid.beyond(distance).toVar() as Float
+    const ray = this.#rayTo(end)
+    let [tolerance, front]: [Float, SeenForeground?] = [float(0)]
+    if (foreground !== undefined) {
+      const passes = transmittance ?? foreground.transmittanceAt(this.#place)
+      front = this.#frontAt(distance, passes)
+      const isSeen = passes.lessThan(CLEAR).toConst()
+      beyond.assign(beyond.max(this.#isForward))
+      If(isSeen, () => {
+        distance.assign(distance.min(foreground.distanceAt(this.#place, true)))
+        beyond.assign(mix(grid.beyond(distance), beyond, passes))
+      })
+      tolerance = isSeen.select(foreground.tolerance, 0).toConst() as Float
+    }
+    const lost = grid.read(this.#place, beyond, tolerance, (nearer, most) => {
+      distance.assign(distance.mul(nearer).min(most))
+      const to = ray.distance.min(most).toConst() as Float
+      return seenLight(to, front, this.#lightOn(ray), 1 - CLEAR).seen
+    })
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -212,50 +229,50 @@ export class ScreenShafts implements ScreenShadows {
     return this.foreground === undefined && screens.hasForeground && !(this.isMesh && isForward)
   }
 
-  dim(color: Vec3): Vec3 {
+  dim(color: Vec3, transmittance?: Float): Vec3 {
     const left = color.toVar()
     if (this.#isDrawnByForeground) return left
     If(this.#strength.greaterThan(0), () => {
-      const lost = Fn(({ renderer }): Vec3 => this.#lostUpTo(this.#endIn(renderer, this.#place)))()
+      const lost = Fn(({ renderer }): Vec3 =>
+        this.#lostUpTo(this.#endIn(renderer, this.#place), transmittance)
+      )()
       // Clouds may also give light.
       left.subAssign(lost.min(left))
     })
     return left
   }
 
-  /** Part of the light from a distance that the picture has, and the distance beyond which it has none [m]. */
-  #seen(front: SeenForeground | undefined): {
-    seenFrom?: (distance: Float) => Float
-    most: Float
-  } {
-    if (front === undefined) return { most: float(FAR) }
-    const { distance, transmittance } = front
-    // Behind the foreground the shadows of materials are dimmed with them.
-    const before = transmittance.mul(this.#isForward).oneMinus().toConst() as Float
+  /** A foreground of a pixel: behind it the shadows of materials are dimmed with them. */
+  #frontAt(distance: Float, transmittance: Float): SeenForeground {
     const behind = transmittance.mul(this.#isForward.oneMinus()).toConst() as Float
-    return {
-      seenFrom: from => from.lessThan(distance).select(before, behind),
-      most: behind.greaterThan(MIN_TRANSMITTANCE).select(FAR, distance).toConst()
-    }
-  }
-
-  /** Distance of what is seen [m]: on the logarithms' way from a foreground to what is behind, as far as that shows. */
-  #seenDistance(front: SeenForeground | undefined, distance: Float): Float {
-    if (front === undefined) return distance
-    const behind = front.transmittance.mul(this.#isForward.oneMinus())
-    return front.distance.min(distance).div(distance).pow(behind.oneMinus()).mul(distance).toConst()
+    return { distance, before: transmittance.oneMinus(), behind }
   }
 
   /** Light that the ray of a pixel of the grid loses. */
   #march(renderer: Renderer, at: Vec2, pixel: Vec2): LostLight {
     const { view, shadowedAir, steps } = this.#shafts
+    const { foreground, grid } = this
     const ray = this.#rayTo(this.#endIn(renderer, at))
-    const front = this.foreground?.seenAt(at)
-    const { seenFrom, most } = this.#seen(front)
-    const seen = { ...ray, distance: ray.distance.min(most).toConst() as Float, seenFrom }
+    const { distance } = ray
+    let seen: ShaftRay = ray
+    let beyond = grid.beyond(distance)
+    let front: SeenForeground | undefined
+    if (foreground !== undefined) {
+      const passes = foreground.transmittanceAt(at)
+      const nearest = foreground.distanceAt(at, false).min(distance).toConst() as Float
+      front = this.#frontAt(nearest, passes)
+      beyond = mix(grid.beyond(nearest), beyond.max(this.#isForward), passes)
+      const { behind } = front
+      const before = front.before.add(behind).toConst() as Float
+      seen = {
+        ...ray,
+        distance: behind.greaterThan(MIN_TRANSMITTANCE).select(distance, nearest).toConst(),
+        seenFrom: from => from.lessThan(nearest).select(before, behind)
+      }
+    }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
-    const distance = this.#seenDistance(front, ray.distance)
-    return { lost: this.#color(lost), lit: this.#litAir({ ...ray, distance }), distance }
+    const { all, seen: lit } = seenLight(distance, front, this.#lightOn(ray))
+    return { lost: this.#color(lost), lit, all, distance, beyond: beyond.toConst() }
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
@@ -292,7 +309,11 @@ export class ScreenShafts implements ScreenShadows {
     return unclampedSRGB(air.uniforms, light.mul(source.irradiance)).div(this.#gain).toConst()
   }
 
-  /** Light of the air on a ray without shadows, as the grid keeps it. */
+  /** Light of the air on a ray up to a distance without shadows, as the grid keeps it. */
+  #lightOn(ray: ShaftRay): (distance: Float) => Vec3 {
+    return distance => this.#litAir({ ...ray, distance })
+  }
+
   #litAir(ray: ShaftRay): Vec3 {
     const { cosView, cosViewLight, distance } = ray
     const { air, volume, viewpoint } = this.#shafts.view

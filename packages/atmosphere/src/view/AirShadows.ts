@@ -12,14 +12,17 @@ import type { SkyLayer } from './SkyLayer'
 export interface ForegroundLayer {
   /** False while it is not drawn. */
   readonly isDrawn: boolean
+  /** Octaves by which its rough distance may be off: half a step of it, and more. */
+  readonly tolerance: number
   /**
-   * Its distance [m], and the part of the light from behind that passes.
+   * Its distance [m].
    *
    * @param at - Place in the picture, as texture coordinates.
-   * @param around - Distance that is known of pixels around, for one that is kept in steps: the distance is as near to it as the
-   *   steps allow [log2 m].
+   * @param isRough - True for what takes one read: it may be kept in steps.
    */
-  seenAt(at: Vec2, around?: Float): { distance: Float; transmittance: Float }
+  distanceAt(at: Vec2, isRough: boolean): Float
+  /** Part of the light from behind that passes, in [0, 1]. */
+  transmittanceAt(at: Vec2): Float
 }
 
 /** Shadows in the air of a picture. */
@@ -31,8 +34,12 @@ export interface ScreenShadows extends SkyLayer {
    * foreground goes on from there.
    */
   prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void
-  /** Takes what shadows take from a colour, linear sRGB × `luminanceScale`. */
-  dim(color: Vec3): Vec3
+  /**
+   * Takes what shadows take from a colour, linear sRGB × `luminanceScale`.
+   *
+   * @param transmittance - That of the foreground, where it is known.
+   */
+  dim(color: Vec3, transmittance?: Float): Vec3
   /**
    * Light that the pixel loses, linear sRGB × `luminanceScale`; undefined where another node takes it.
    *

@@ -205,7 +205,9 @@ describe('what is added to light shafts', () => {
         drawn++
         return true
       },
-      seenAt: () => ({ distance: float(1), transmittance: float(1) })
+      tolerance: 0,
+      distanceAt: () => float(1),
+      transmittanceAt: () => float(1)
     }
     for (let i = 0; i < 3; i++) {
       const screen = shafts.upTo(float(1), foreground) as ScreenShafts

@@ -316,7 +316,7 @@ export class CloudsNode extends AtmosphereNode {
       const color = vec4(whereSeen(this.colorNode, clouds.a.greaterThan(0)) as Vec4).toConst()
       const light = clouds.rgb.mul(this.#exposure)
       const result = color.rgb.mul(clouds.a).add(light).toVar()
-      for (const screen of this.screens) result.assign(screen.dim(result))
+      for (const screen of this.screens) result.assign(screen.dim(result, clouds.a))
       return vec4(result, color.a.mul(clouds.a).add(clouds.a.oneMinus()))
     })()
   }

@@ -5,13 +5,10 @@ import { DISTANCE_STEP, unpack } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import type { Float, Vec2, Vec4 } from '../tsl-types'
 
-/** Greatest difference of a smooth distance from history's, and that of another cloud's or none [octaves]. */
-const TOLERANCE = 0.6 * DISTANCE_STEP
-const OTHER = 1
-
 /** Clouds as light shafts see them: drawn over the air, half opaque. */
 export class CloudForeground implements ForegroundLayer {
   readonly #clouds: CloudsNode
+  readonly tolerance = 0.6 * DISTANCE_STEP
   /** True once the shafts have no shadow of the clouds any more. */
   isRemoved = false
 
@@ -23,21 +20,21 @@ export class CloudForeground implements ForegroundLayer {
     return !this.isRemoved && !this.#clouds.isDisposed
   }
 
-  seenAt(at: Vec2, around?: Float): { distance: Float; transmittance: Float } {
+  distanceAt(at: Vec2, isRough: boolean): Float {
     const { accumulated, marched, viewRays } = this.#clouds.passes
     const { frame } = viewRays
     const read = ({ distances }: CloudTargets, place: Vec2): Vec4 =>
       distances.sample(place).level(0).toConst()
     const kept = unpack(read(accumulated, at)).x
+    if (isRough) return exp2(kept).toConst()
     // History's distances are bytes, whose steps would show in haze; marched ones are smooth, but of pixels nearby.
     const block = at.mul(frame.size).sub(frame.jitter).sub(0.5).div(frame.block).add(0.5)
-    const smooth = around ?? read(marched, block.div(frame.marchedSize).toConst()).x
-    const off = smooth.sub(kept).toConst() as Float
-    const isOther = off.abs().greaterThan(OTHER)
-    const near = isOther.select(0, off.clamp(-TOLERANCE, TOLERANCE))
-    return {
-      distance: exp2(kept.add(near)).toConst(),
-      transmittance: accumulated.light.sample(at).level(0).a.toConst()
-    }
+    const smooth = read(marched, block.div(frame.marchedSize).toConst()).x
+    const near = smooth.clamp(kept.sub(this.tolerance), kept.add(this.tolerance))
+    return exp2(near).toConst()
+  }
+
+  transmittanceAt(at: Vec2): Float {
+    return this.#clouds.passes.accumulated.light.sample(at).level(0).a.toConst()
   }
 }
