@@ -20,6 +20,8 @@ export interface CloudSourceSample {
   /** Depths to both ends of the cloud on the view ray and along the vertical; left out, a sphere's. */
   viewChord?: readonly [number, number]
   verticalChord?: readonly [number, number]
+  /** Part of the ray of light that is filled with cloud; left out, a sphere's. */
+  filled?: number
   resolved?: number
   /** 1 for a cloud deck (plane-parallel), 0 for an isolated cloud, as wide as it is deep. */
   layered: number
@@ -41,6 +43,7 @@ const clamp = (x: number, low: number, high: number): number => Math.min(Math.ma
  */
 export function lateralLeak(sample: CloudSourceSample, oneMinusAsymmetry: number): number {
   const { depthToLight, depthThrough, depthAcross, viewChord, verticalChord, resolved = 1 } = sample
+  const { filled } = sample
   const part = clamp(depthToLight / Math.max(depthThrough, 1e-4), 0, 1)
   const depth = Math.log(1 + oneMinusAsymmetry * Math.min(depthAcross, fit.largestDiameter))
   const chord = clamp(depthThrough / Math.max(depthAcross, 1e-4), 0, 1)
@@ -56,18 +59,30 @@ export function lateralLeak(sample: CloudSourceSample, oneMinusAsymmetry: number
     fit.partChord * part * chord +
     fit.depthChord * depth * chord
   /** Share that escapes along a chord, by the geometric mean of the depths to its ends, in transport depths. */
-  const escape = (mean: number): number => Math.exp(-fit.chordDepth * oneMinusAsymmetry * mean)
+  const escape = (mean: number, scale: number): number =>
+    Math.exp(-scale * oneMinusAsymmetry * mean)
   const own = Math.sqrt(depthToLight * Math.max(depthThrough - depthToLight, 0))
   let openness = 0
   if (viewChord) {
     const [front, behind] = viewChord
     const seen = Math.sqrt(front * Math.max(fit.seenDepth - front, 0))
     const found = Math.min(Math.sqrt(front * behind), seen)
-    openness += fit.view * (escape(found) - escape(Math.min(own, seen)))
+    openness +=
+      fit.view * (escape(found, fit.viewDepth) - escape(Math.min(own, seen), fit.viewDepth))
   }
   if (verticalChord) {
     const [above, below] = verticalChord
-    openness += fit.vertical * (escape(Math.sqrt(above * below)) - escape(own))
+    const mean = Math.sqrt(above * below)
+    openness += fit.vertical * (escape(mean, fit.verticalDepth) - escape(own, fit.verticalDepth))
+  }
+  if (filled !== undefined) {
+    const toLight = 1 + depthToLight
+    const behind = 1 + Math.max(depthThrough - depthToLight, 0)
+    // (1 + d)(1 + b)^⅗ / e to the power of the gaps.
+    const crossed = Math.log((toLight * behind ** fit.gapsBehind) / Math.E)
+    const weight = fit.gapsEnd ** 2 / (fit.gapsEnd ** 2 + depthThrough ** 2)
+    openness -= fit.gaps * weight * Math.log(clamp(filled, fit.leastFilled, 1)) * crossed
+    openness -= fit.around * Math.log(toLight) * part ** 3
   }
   return Math.exp(exponent - openness * resolved)
 }

@@ -21,13 +21,27 @@ export const lateralLeakFit = {
   /** Largest scaled optical diameter that the fit knows; the leak of larger ones is taken to be the same. */
   largestDiameter: 40,
   /**
-   * Logarithm that openness along the view ray and along the vertical takes, and scale of a chord's depth
-   * [1/transport depth]. Rounded from a fit to Monte-Carlo solutions in 13 clouds of a large-eddy simulation and suns from 3° to 80°; none
-   * of them is the cloud of `validate --cloud-light`.
+   * Logarithm that openness along the view ray and along the vertical takes, and scales of a chord's depth
+   * [1/transport depth]. Rounded from fits to Monte-Carlo solutions in clouds of large-eddy simulations: 13 and suns from 3° to 80° for the
+   * view ray, five others and a thunderstorm for the rest, as for `gaps` and `around`. None of them is the cloud of
+   * `validate --cloud-light`.
    */
   view: 1.4,
-  vertical: 0.8,
-  chordDepth: 0.74,
+  viewDepth: 0.74,
+  vertical: 0.66,
+  verticalDepth: 0.3,
+  /**
+   * Logarithm that gaps on the ray of light take, per logarithm of its part that is filled and of 1 + the depth to the light: scattered
+   * light spreads in them. `gapsBehind` is the weight of the depth behind in it. Clouds much deeper than `gapsEnd` have other reasons to
+   * be thin in the mean: anvils.
+   */
+  gaps: 0.24,
+  gapsBehind: 0.6,
+  gapsEnd: 12,
+  /** Least part that is filled: a cloud's own ends are thin, too. */
+  leastFilled: 0.03,
+  /** Logarithm of what comes round to the shaded end of a cloud with bays and lobes, per logarithm of 1 + the depth there. */
+  around: 0.28,
   /** Scaled depth at which rays end, −ln of `LEAST_TRANSMITTANCE`. */
   seenDepth: 4.605,
   /** Diameter over the mean chord of a sphere. */

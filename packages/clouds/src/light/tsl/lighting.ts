@@ -71,6 +71,7 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     cosViewLight,
     viewChord: [depthToCamera, depthBehind] as const,
     verticalChord: [depthAbove, depthBelow] as const,
+    filled: depths.filled,
     resolved: mix(fit.unresolvedChords, 1, resolved) as Float,
     faces: smoothstep(...facingFit.footprints, footprint).oneMinus() as Float
   }

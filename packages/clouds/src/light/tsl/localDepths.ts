@@ -60,6 +60,8 @@ export interface LocalDepths {
   through: Float
   above: Float
   below: Float
+  /** Mean extinction on that ray, from end to end of its clouds, over the layers'; above 1 where there is no map. */
+  filled: Float
 }
 
 /**
@@ -68,7 +70,7 @@ export interface LocalDepths {
  */
 export function localDepths(
   { field, shadows, quality }: ShadingContext,
-  { sample, weather, layers: { base, top, layered } }: ShadedSample,
+  { sample, weather, layers: { base, top, layered, density } }: ShadedSample,
   { direction: toLight, isMapped, cosine: cosLight }: ShadingLight
 ): LocalDepths {
   const [rise, fall] = [top.sub(sample.altitude), sample.altitude.sub(base)].map(length =>
@@ -116,14 +118,14 @@ export function localDepths(
   const far = sampleShadows(shadows, beyond)
   const unmapped = far.inMap.mul(isMapped).oneMinus().toConst() as Float
   // Where no map is: as near, thinning out towards the top.
-  const density = found.y.div(probed).toConst()
+  const mean = found.y.div(probed).toConst()
   const widest = top.sub(base).mul(WIDEST).div(layered.oneMinus().max(1e-3))
-  const guess = density.mul(toTop.min(widest).sub(probed).max(0)).toConst()
+  const guess = mean.mul(toTop.min(widest).sub(probed).max(0)).toConst()
   const depthToLight = found.y
     .add(far.toLight.mul(isMapped))
     .add(guess.mul(unmapped))
     .toConst() as Float
-  const behind = cosLight.greaterThan(0).select(fall, rise).mul(slant).mul(density)
+  const behind = cosLight.greaterThan(0).select(fall, rise).mul(slant).mul(mean)
   const through = far.through
     .mul(isMapped)
     .add(depthToLight.add(behind).mul(unmapped))
@@ -133,6 +135,7 @@ export function localDepths(
     toLight: depthToLight,
     through,
     above: above.mul(found.x.mul(ABOVE / 2).add(found.z.mul(0.5))),
-    below: below.mul(found.x).mul(layered.add(1).mul(BELOW))
+    below: below.mul(found.x).mul(layered.add(1).mul(BELOW)),
+    filled: far.through.mul(far.through).div(far.stretch.mul(density).max(1e-6)).add(unmapped)
   }
 }
