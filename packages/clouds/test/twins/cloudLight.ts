@@ -59,30 +59,26 @@ export function lateralLeak(sample: CloudSourceSample, oneMinusAsymmetry: number
     fit.partChord * part * chord +
     fit.depthChord * depth * chord
   /** Share that escapes along a chord, by the geometric mean of the depths to its ends, in transport depths. */
-  const escape = (mean: number, scale: number): number =>
-    Math.exp(-scale * oneMinusAsymmetry * mean)
+  const escape = (mean: number): number => Math.exp(-fit.chordDepth * oneMinusAsymmetry * mean)
   const own = Math.sqrt(depthToLight * Math.max(depthThrough - depthToLight, 0))
   let openness = 0
   if (viewChord) {
     const [front, behind] = viewChord
     const seen = Math.sqrt(front * Math.max(fit.seenDepth - front, 0))
     const found = Math.min(Math.sqrt(front * behind), seen)
-    openness +=
-      fit.view * (escape(found, fit.viewDepth) - escape(Math.min(own, seen), fit.viewDepth))
+    openness += fit.view * (escape(found) - escape(Math.min(own, seen)))
   }
   if (verticalChord) {
     const [above, below] = verticalChord
-    const mean = Math.sqrt(above * below)
-    openness += fit.vertical * (escape(mean, fit.verticalDepth) - escape(own, fit.verticalDepth))
+    openness += fit.vertical * (escape(Math.sqrt(above * below)) - escape(own))
   }
   if (filled !== undefined) {
     const toLight = 1 + depthToLight
     const behind = 1 + Math.max(depthThrough - depthToLight, 0)
-    // (1 + d)(1 + b)^⅗ / e to the power of the gaps.
-    const crossed = Math.log((toLight * behind ** fit.gapsBehind) / Math.E)
-    const weight = fit.gapsEnd ** 2 / (fit.gapsEnd ** 2 + depthThrough ** 2)
-    openness -= fit.gaps * weight * Math.log(clamp(filled, fit.leastFilled, 1)) * crossed
-    openness -= fit.around * Math.log(toLight) * part ** 3
+    const crossed = Math.log(toLight * Math.sqrt(behind)) - fit.gapsFrom
+    const gaps = Math.log(clamp(filled, fit.leastFilled, 1)) * crossed
+    openness -= fit.gaps * gaps * Math.exp(-depthThrough / fit.gapsDepth)
+    openness -= fit.around * Math.log(toLight) * part ** 2
   }
   return Math.exp(exponent - openness * resolved)
 }

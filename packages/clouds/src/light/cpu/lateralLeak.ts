@@ -21,27 +21,26 @@ export const lateralLeakFit = {
   /** Largest scaled optical diameter that the fit knows; the leak of larger ones is taken to be the same. */
   largestDiameter: 40,
   /**
-   * Logarithm that openness along the view ray and along the vertical takes, and scales of a chord's depth
-   * [1/transport depth]. Rounded from fits to Monte-Carlo solutions in clouds of large-eddy simulations: 13 and suns from 3° to 80° for the
-   * view ray, five others and a thunderstorm for the rest, as for `gaps` and `around`. None of them is the cloud of
-   * `validate --cloud-light`.
+   * Logarithm that openness along the view ray and along the vertical takes, and scale of a chord's depth
+   * [1/transport depth]. Rounded from a fit to Monte-Carlo solutions in 13 clouds of a large-eddy simulation and suns from 3° to 80°; none
+   * of them is the cloud of `validate --cloud-light`.
    */
   view: 1.4,
-  viewDepth: 0.74,
-  vertical: 0.66,
-  verticalDepth: 0.3,
+  vertical: 0.8,
+  chordDepth: 0.74,
   /**
-   * Logarithm that gaps on the ray of light take, per logarithm of its part that is filled and of 1 + the depth to the light: scattered
-   * light spreads in them. `gapsBehind` is the weight of the depth behind in it. Clouds much deeper than `gapsEnd` have other reasons to
-   * be thin in the mean: anvils.
+   * Gaps on the ray of light, in which scattered light spreads: what they take per logarithm of the part that is filled and of 1 + the depth
+   * to the light, with half of that behind, from `gapsFrom` on. Clouds much deeper than `gapsDepth` have other reasons to be thin in the mean:
+   * anvils. Rounded, as `around`, from a fit to path-traced pictures of five clouds of a large-eddy simulation, none of them that cloud, and of a
+   * simulated thunderstorm.
    */
-  gaps: 0.24,
-  gapsBehind: 0.6,
-  gapsEnd: 12,
-  /** Least part that is filled: a cloud's own ends are thin, too. */
+  gaps: 0.23,
+  gapsFrom: 0.8,
+  gapsDepth: 20,
+  /** Least part that is filled: the ends of a cloud are thin, too. */
   leastFilled: 0.03,
   /** Logarithm of what comes round to the shaded end of a cloud with bays and lobes, per logarithm of 1 + the depth there. */
-  around: 0.28,
+  around: 0.24,
   /** Scaled depth at which rays end, −ln of `LEAST_TRANSMITTANCE`. */
   seenDepth: 4.605,
   /** Diameter over the mean chord of a sphere. */

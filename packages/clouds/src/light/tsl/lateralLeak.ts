@@ -29,30 +29,26 @@ export type Chord = readonly [Float, Float]
 /**
  * Lateral leak: share of a slab's multiply scattered light that an isolated cloud keeps: a sphere's, less where the
  * cloud is open along other lines than the light's. The product of the depths to both ends of a chord is
- * the same for all chords through a place of a sphere (intersecting chords theorem): chords with less leak more. Lobes that shade others
- * over a gap spread their light in it, and it comes round to shaded ends. Twin: test/twins/cloudLight.ts
+ * the same for all chords through a place of a sphere (intersecting chords theorem): chords with less leak more. Light of lobes that shade
+ * others over a gap spreads in it, and comes round to shaded ends. Twin: test/twins/cloudLight.ts
  */
 export function lateralLeak(light: CloudLight, sample: LeakNodes): Float {
   const { depthToLight, depthThrough, depthAcross, layered } = sample
   const { viewChord, verticalChord, filled, resolved = float(1) } = sample
   /** Share of the light that escapes along a chord, by the product of the depths to its ends. */
-  const escape = (product: Float, scale: number): Float =>
-    product.max(0).sqrt().mul(light.oneMinusAsymmetry).mul(-scale).exp()
+  const escape = (product: Float): Float =>
+    product.max(0).sqrt().mul(light.oneMinusAsymmetry).mul(-fit.chordDepth).exp().toConst()
   const own = depthToLight.mul(depthThrough.sub(depthToLight)).toConst() as Float
   let openness: Float = float(0)
   if (viewChord) {
     const [front, behind] = viewChord
     // More than rays see is not known.
     const seen = front.mul(front.negate().add(fit.seenDepth).max(0)).toConst() as Float
-    const open = escape(front.mul(behind).min(seen), fit.viewDepth).sub(
-      escape(own.min(seen), fit.viewDepth)
-    )
+    const open = escape(front.mul(behind).min(seen)).sub(escape(own.min(seen)))
     openness = openness.add(open.mul(fit.view))
   }
   if (verticalChord) {
-    const open = escape(verticalChord[0].mul(verticalChord[1]), fit.verticalDepth).sub(
-      escape(own, fit.verticalDepth)
-    )
+    const open = escape(verticalChord[0].mul(verticalChord[1])).sub(escape(own))
     openness = openness.add(open.mul(fit.vertical))
   }
   const part = depthToLight.div(depthThrough.max(1e-4)).clamp().toConst()
@@ -63,16 +59,10 @@ export function lateralLeak(light: CloudLight, sample: LeakNodes): Float {
     const gaps = filled
       .clamp(fit.leastFilled, 1)
       .log()
-      .mul(behind.mul(fit.gapsBehind).add(toLight).sub(1))
-      .div(
-        depthThrough
-          .mul(depthThrough)
-          .div(fit.gapsEnd ** 2)
-          .add(1)
-      )
-    openness = openness
-      .sub(gaps.mul(fit.gaps))
-      .sub(part.mul(part).mul(part).mul(toLight).mul(fit.around))
+      .mul(behind.div(2).add(toLight).sub(fit.gapsFrom))
+      .mul(depthThrough.div(-fit.gapsDepth).exp())
+    const round = part.mul(part).mul(toLight)
+    openness = openness.sub(gaps.mul(fit.gaps)).sub(round.mul(fit.around))
   }
   const depth = light.oneMinusAsymmetry
     .mul(depthAcross.min(fit.largestDiameter))
