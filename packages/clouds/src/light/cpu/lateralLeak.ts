@@ -11,7 +11,7 @@ export const lateralLeakFit = {
   constant: 0.4876,
   linear: [0.2232, -0.373, -2.6435],
   squares: [-0.1733, -0.0288, 0.9428],
-  /** Of xy, yz and zx. */
+  /** Coefficients of xy, yz and zx. */
   products: [-0.5389, 0.8093, 0.0721],
   /** Largest scaled optical diameter that the fit knows; the leak of larger ones is taken to be the same. */
   largestDiameter: 40,

@@ -34,7 +34,7 @@ export type Chord = readonly [Float, Float]
  */
 export function lateralLeak(light: CloudLight, sample: LeakNodes): Float {
   const { depthToLight, depthThrough, depthAcross, layered, filled, resolved = float(1) } = sample
-  const own: Chord = [depthToLight, depthThrough.sub(depthToLight).max(0).toConst() as Float]
+  const own: Chord = [depthToLight, depthThrough.sub(depthToLight).max(0).toConst()]
   const { viewChord: [front, behind] = own, verticalChord: [above, below] = own } = sample
   const product = depthToLight.mul(own[1]).toConst()
   // More than rays see is not known.
