@@ -48,12 +48,12 @@ gpuTest('scatters sunlight like its float64 twin', async t => {
     const light = new CloudLightTable(parameters)
     light.bake()
     const table = solveCloudLight(light.phase)
-    for (const [layered, cosLight] of [
-      [1, 0.7],
-      [1, 0.03],
-      [1, -0.2],
-      [0, 0.4],
-      [0.5, 0.9]
+    for (const [layered, cosLight, filled] of [
+      [1, 0.7, 0.5],
+      [1, 0.03, 1],
+      [1, -0.2, 1],
+      [0, 0.4, 0.2],
+      [0.5, 0.9, 2]
     ]) {
       const inputs = rows(200, i => {
         const through = depthAt(spread(i, 0))
@@ -71,6 +71,7 @@ gpuTest('scatters sunlight like its float64 twin', async t => {
             depthToCamera: float(0.3),
             viewChord: [float(0.3), input.x.mul(0.4)],
             verticalChord: [input.y.mul(0.2), input.x],
+            filled: float(filled),
             resolved: float(0.7),
             layered: float(layered),
             cosLight: float(cosLight),
@@ -87,6 +88,7 @@ gpuTest('scatters sunlight like its float64 twin', async t => {
           depthToCamera: 0.3,
           viewChord: [0.3, 0.4 * depthToLight],
           verticalChord: [0.2 * depthThrough, depthToLight],
+          filled,
           resolved: 0.7,
           layered,
           cosLight: cosLight,
@@ -198,6 +200,7 @@ gpuTest('gives no NaN at the ends of its domain', async t => {
           depthToCamera: input.x,
           viewChord: [input.x, input.y],
           verticalChord: [input.y, input.x],
+          filled: input.x,
           cosLight: float(cosLight),
           cosViewLight: input.w
         })
@@ -257,7 +260,7 @@ gpuTest(
       const offset = up.mul(altitude.sub(field.view.height)).toConst() as Node<'vec3'>
       const sample = { offset, ...field.view.localCoordinates(offset), distance: float(1000) }
       const weather = weatherCacheAt(field, sample, layersAt(field, sample.altitude).range)
-      const around = { base: float(1000), top: float(11_000), layered }
+      const around = { base: float(1000), top: float(11_000), layered, density: float(1) }
       const shaded = { sample, weather, layers: around } as unknown as ShadedSample
       const source = lightAt(context, sample)
       return localDepths(context, shaded, source).above

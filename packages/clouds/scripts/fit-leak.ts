@@ -37,8 +37,8 @@ const powers: Record<string, [number, number, number]> = {
   depth2: [0, 2, 0],
   chord2: [0, 0, 2],
   partDepth: [1, 1, 0],
-  partChord: [1, 0, 1],
-  depthChord: [0, 1, 1]
+  depthChord: [0, 1, 1],
+  chordPart: [1, 0, 1]
 }
 const names = Object.keys(powers)
 

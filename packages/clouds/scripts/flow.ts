@@ -6,9 +6,9 @@ import { RINGS, STEPS, type SphereLight } from './sphere'
 export function flowTerms(diameter: number, chi1: number, chi2: number): [number, number, number] {
   const depth = (1 - chi1) * diameter
   return [
-    (fit.along * chi1 ** 2) / (1 + depth / fit.alongDepth),
-    (fit.square * chi2) / (1 + depth / fit.squareDepth),
-    (3 * chi1 * fit.aside) / (1 + depth / fit.asideDepth)
+    (fit.along[0] * chi1 ** 2) / (1 + depth / fit.along[1]),
+    (fit.square[0] * chi2) / (1 + depth / fit.square[1]),
+    (3 * chi1 * fit.aside[0]) / (1 + depth / fit.aside[1])
   ]
 }
 

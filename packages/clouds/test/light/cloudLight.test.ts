@@ -146,6 +146,24 @@ describe('lateral leak', () => {
     expect(leak([2, 3], [1.5, 0.1])).toBeLessThan(0.9 * whole)
     expect(leak([2, 3], [9, 4])).toBeGreaterThan(1.05 * whole)
   })
+
+  it('takes more where a body shades another over a gap, the more the deeper they are, and less of shaded ends', () => {
+    const bodies = (toLight: number, through: number, filled?: number): number =>
+      lateralLeak(
+        { ...isolated, depthToLight: toLight, depthThrough: through, depthAcross: 7, filled },
+        0.7
+      )
+    const taken = (toLight: number, filled: number): number =>
+      bodies(toLight, 8, filled) / bodies(toLight, 8, 1)
+    // Two halves, with as much clear air between.
+    expect(taken(4, 0.5)).toBeLessThan(0.85)
+    expect(taken(4, 0.2)).toBeLessThan(taken(4, 0.5))
+    expect(taken(7, 0.2)).toBeLessThan(taken(1, 0.2))
+    expect(taken(4, 3)).toBe(1)
+    const comesRound = (toLight: number): number => bodies(toLight, 8, 1) / bodies(toLight, 8)
+    expect(comesRound(0.5)).toBeCloseTo(1, 3)
+    expect(comesRound(8)).toBeGreaterThan(1.5)
+  })
 })
 
 describe('flow', () => {

@@ -20,6 +20,8 @@ export interface CloudSourceSample {
   /** Depths to both ends of the cloud on the view ray and along the vertical; left out, a sphere's. */
   viewChord?: readonly [number, number]
   verticalChord?: readonly [number, number]
+  /** Part of the ray of light that is filled with cloud; left out, a sphere's. */
+  filled?: number
   resolved?: number
   /** 1 for a cloud deck (plane-parallel), 0 for an isolated cloud, as wide as it is deep. */
   layered: number
@@ -41,20 +43,16 @@ const clamp = (x: number, low: number, high: number): number => Math.min(Math.ma
  */
 export function lateralLeak(sample: CloudSourceSample, oneMinusAsymmetry: number): number {
   const { depthToLight, depthThrough, depthAcross, viewChord, verticalChord, resolved = 1 } = sample
+  const { filled } = sample
   const part = clamp(depthToLight / Math.max(depthThrough, 1e-4), 0, 1)
   const depth = Math.log(1 + oneMinusAsymmetry * Math.min(depthAcross, fit.largestDiameter))
   const chord = clamp(depthThrough / Math.max(depthAcross, 1e-4), 0, 1)
-  const exponent =
-    fit.constant +
-    fit.part * part +
-    fit.depth * depth +
-    fit.chord * chord +
-    fit.part2 * part ** 2 +
-    fit.depth2 * depth ** 2 +
-    fit.chord2 * chord ** 2 +
-    fit.partDepth * part * depth +
-    fit.partChord * part * chord +
-    fit.depthChord * depth * chord
+  const at = [part, depth, chord]
+  const exponent = at.reduce(
+    (sum, x, i) =>
+      sum + fit.linear[i] * x + fit.squares[i] * x ** 2 + fit.products[i] * x * at[(i + 1) % 3],
+    fit.constant
+  )
   /** Share that escapes along a chord, by the geometric mean of the depths to its ends, in transport depths. */
   const escape = (mean: number): number => Math.exp(-fit.chordDepth * oneMinusAsymmetry * mean)
   const own = Math.sqrt(depthToLight * Math.max(depthThrough - depthToLight, 0))
@@ -68,6 +66,14 @@ export function lateralLeak(sample: CloudSourceSample, oneMinusAsymmetry: number
   if (verticalChord) {
     const [above, below] = verticalChord
     openness += fit.vertical * (escape(Math.sqrt(above * below)) - escape(own))
+  }
+  if (filled !== undefined) {
+    const toLight = 1 + depthToLight
+    const behind = 1 + Math.max(depthThrough - depthToLight, 0)
+    const { weight, from, depth: deepest, least } = fit.gaps
+    const gaps = Math.log(clamp(filled, least, 1)) * weight * Math.exp(-depthThrough / deepest)
+    openness -= gaps * (Math.log(toLight * Math.sqrt(behind)) - from)
+    openness -= fit.around * Math.log(toLight) * part ** 2
   }
   return Math.exp(exponent - openness * resolved)
 }
@@ -85,8 +91,8 @@ export function flow(
 ): number {
   const { depthToLight, depthThrough, depthAcross, viewChord, cosViewLight, resolved = 1 } = sample
   const diameter = (1 - chi1) * depthAcross
-  const along = (flowFit.along * chi1 ** 2) / (1 + diameter / flowFit.alongDepth)
-  const square = (flowFit.square * chi2) / (1 + diameter / flowFit.squareDepth)
+  const along = (flowFit.along[0] * chi1 ** 2) / (1 + diameter / flowFit.along[1])
+  const square = (flowFit.square[0] * chi2) / (1 + diameter / flowFit.square[1])
   const both = along * cosView + (square * (3 * cosView ** 2 - 1)) / 2
   if (viewChord === undefined) return both
   // From the middle of both chords, towards the camera and towards the light.
@@ -99,7 +105,7 @@ export function flow(
   const radius = Math.max(depthAcross, 1e-4) / 2
   const aside = clamp((towardsCamera + cosViewLight * towardsLight) / radius, -1, 1)
   return (
-    both + ((3 * chi1 * flowFit.aside) / (1 + diameter / flowFit.asideDepth)) * aside * resolved
+    both + ((3 * chi1 * flowFit.aside[0]) / (1 + diameter / flowFit.aside[1])) * aside * resolved
   )
 }
 

@@ -11,8 +11,8 @@ import { legendreSeries, readLayer, slabCoordinates } from './slabTable'
 
 /** Depths about a sample in its cloud. All depths are scaled optical depths τ′ = `light.depthScale` τ. */
 export interface CloudSourceNodes extends FacingNodes {
-  /** Depth from the viewpoint to the sample, in the cloud; left out, the aureole is sharper than it should be. */
-  depthToCamera?: Float
+  /** Depth from the viewpoint to the sample, in the cloud. */
+  depthToCamera: Float
   /** The light against the local up. */
   cosLight: Float
   /** The view ray against the local up. */
@@ -63,8 +63,7 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
       .add(first.w.add(second.x.mul(cosView)).mul(along))
       .add(second.y.mul(along.mul(along).mul(2).sub(sines)))
       .add(flow(light, sample, cosView, cosViewLight).mul(first.x).mul(isolated))
-    const path = depthToCamera === undefined ? depthToLight : depthToLight.add(depthToCamera)
-    const single = singlePhase(light, cosViewLight, path)
+    const single = singlePhase(light, cosViewLight, depthToLight.add(depthToCamera))
       .mul(light.scatteringScale)
       .mul(depthToLight.negate().exp())
     const kept = lateralLeak(light, sample).mul(facing(sample, cosViewLight))

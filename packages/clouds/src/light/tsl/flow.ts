@@ -20,11 +20,11 @@ export function flow(
   const { depthToLight, depthThrough, depthAcross, viewChord, resolved = float(1) } = sample
   const depth = light.oneMinusAsymmetry.mul(depthAcross).toConst()
   const asymmetry = light.oneMinusAsymmetry.oneMinus()
-  const over = (scale: number): Float => depth.div(scale).add(1)
-  const along = asymmetry.mul(asymmetry).mul(fit.along).div(over(fit.alongDepth)).mul(cosView)
+  const term = ([size, scale]: readonly [number, number]): Float =>
+    depth.div(scale).add(1).reciprocal().mul(size)
+  const along = asymmetry.mul(asymmetry).mul(term(fit.along)).mul(cosView)
   const square = light.secondMoment
-    .mul(fit.square)
-    .div(over(fit.squareDepth))
+    .mul(term(fit.square))
     .mul(cosView.mul(cosView).mul(1.5).sub(0.5))
   const both = along.add(square)
   if (viewChord === undefined) return both
@@ -34,6 +34,6 @@ export function flow(
   const onRay = behind.min(own.div(front.max(1e-4))).sub(front)
   const onAxis = depthThrough.sub(depthToLight.mul(2)).mul(cosViewLight)
   const aside = onRay.add(onAxis).div(depthAcross.max(1e-4)).clamp(-1, 1)
-  const outwards = asymmetry.mul(3 * fit.aside).div(over(fit.asideDepth))
+  const outwards = asymmetry.mul(3).mul(term(fit.aside))
   return both.add(outwards.mul(aside).mul(resolved))
 }

@@ -1,4 +1,4 @@
-import { float } from 'three/tsl'
+import { float, vec3, vec4 } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
 import { lateralLeakFit as fit } from '../cpu/lateralLeak'
 import type { Float } from '../../tsl-types'
@@ -17,7 +17,9 @@ export interface LeakNodes {
   viewChord?: Chord
   /** Its chord along the vertical; left out, a sphere's. */
   verticalChord?: Chord
-  /** Weight of both: 0 where clouds are not resolved, whose mean extinction knows no sides; left out, 1. */
+  /** Mean extinction on the ray of light, from end to end of its clouds, over that of dense cloud; left out, a sphere's. */
+  filled?: Float
+  /** Weight of these: 0 where clouds are not resolved, whose mean extinction knows no sides; left out, 1. */
   resolved?: Float
 }
 
@@ -27,42 +29,36 @@ export type Chord = readonly [Float, Float]
 /**
  * Lateral leak: share of a slab's multiply scattered light that an isolated cloud keeps: a sphere's, less where the
  * cloud is open along other lines than the light's. The product of the depths to both ends of a chord is
- * the same for all chords through a place of a sphere (intersecting chords theorem): chords with less leak more. Twin:
- * test/twins/cloudLight.ts
+ * the same for all chords through a place of a sphere (intersecting chords theorem): chords with less leak more. Light of lobes that shade
+ * others over a gap spreads in it, and comes round to shaded ends. Twin: test/twins/cloudLight.ts
  */
 export function lateralLeak(light: CloudLight, sample: LeakNodes): Float {
-  const { depthToLight, depthThrough, depthAcross, layered } = sample
-  const { viewChord, verticalChord, resolved = float(1) } = sample
-  /** Share of the light that escapes along a chord, by the product of the depths to its ends. */
-  const escape = (product: Float): Float =>
-    product.max(0).sqrt().mul(light.oneMinusAsymmetry).mul(-fit.chordDepth).exp().toConst()
-  const own = depthToLight.mul(depthThrough.sub(depthToLight)).toConst() as Float
-  let openness: Float = float(0)
-  if (viewChord) {
-    const [front, behind] = viewChord
-    // More than rays see is not known.
-    const seen = front.mul(front.negate().add(fit.seenDepth).max(0)).toConst() as Float
-    const open = escape(front.mul(behind).min(seen)).sub(escape(own.min(seen)))
-    openness = openness.add(open.mul(fit.view))
-  }
-  if (verticalChord) {
-    const open = escape(verticalChord[0].mul(verticalChord[1])).sub(escape(own))
-    openness = openness.add(open.mul(fit.vertical))
-  }
+  const { depthToLight, depthThrough, depthAcross, layered, filled, resolved = float(1) } = sample
+  const own: Chord = [depthToLight, depthThrough.sub(depthToLight).max(0).toConst()]
+  const { viewChord: [front, behind] = own, verticalChord: [above, below] = own } = sample
+  const product = depthToLight.mul(own[1]).toConst()
+  // More than rays see is not known.
+  const seen = front.mul(front.negate().add(fit.seenDepth).max(0)).toConst()
+  const products = vec4(front.mul(behind).min(seen), product.min(seen), above.mul(below), product)
+  /** Shares of the light that escape along chords. */
+  const escaped = products.max(0).sqrt().mul(light.oneMinusAsymmetry).mul(-fit.chordDepth).exp()
+  let openness = escaped.dot(vec4(fit.view, -fit.view, fit.vertical, -fit.vertical))
   const part = depthToLight.div(depthThrough.max(1e-4)).clamp().toConst()
-  const depth = light.oneMinusAsymmetry
-    .mul(depthAcross.min(fit.largestDiameter))
-    .add(1)
-    .log()
-    .toConst()
-  const chord = depthThrough.div(depthAcross.max(1e-4)).clamp().toConst()
-  const byPart = part.mul(fit.part2).add(depth.mul(fit.partDepth)).add(chord.mul(fit.partChord))
-  const byDepth = depth.mul(fit.depth2).add(chord.mul(fit.depthChord)).add(fit.depth)
-  return byPart
-    .add(fit.part)
-    .mul(part)
-    .add(byDepth.mul(depth))
-    .add(chord.mul(fit.chord2).add(fit.chord).mul(chord))
+  if (filled) {
+    const { weight, from, depth, least } = fit.gaps
+    const [toLight, beyond] = own.map(each => each.add(1).log().toConst())
+    const crossed = beyond.div(2).add(toLight).sub(from).mul(weight)
+    const gaps = filled.clamp(least, 1).log().mul(crossed).mul(depthThrough.div(-depth).exp())
+    openness = openness.sub(gaps).sub(part.mul(part).mul(toLight).mul(fit.around))
+  }
+  const depth = light.oneMinusAsymmetry.mul(depthAcross.min(fit.largestDiameter)).add(1).log()
+  const chord = depthThrough.div(depthAcross.max(1e-4)).clamp()
+  const at = vec3(part, depth, chord).toConst()
+  return at
+    .mul(vec3(...fit.squares))
+    .add(vec3(...fit.linear))
+    .add(at.yzx.mul(vec3(...fit.products)))
+    .dot(at)
     .add(fit.constant)
     .sub(openness.mul(resolved))
     .mul(layered.oneMinus())

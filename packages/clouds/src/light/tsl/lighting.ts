@@ -58,8 +58,8 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
   const footprint = footprintOf(context.field, sample).toConst() as Float
   const width = footprint.div(top.sub(base).max(1))
   const resolved = width.oneMinus().clamp().toConst() as Float
-  const height = source.cosine.abs()
-  const unresolved = height.mul(fit.unresolvedDiameterHigh).add(fit.unresolvedDiameter)
+  const [level, rise] = fit.unresolvedDiameter
+  const unresolved = source.cosine.abs().mul(rise).add(level)
   const lit = {
     depthToLight: depths.toLight.mul(scale).toConst() as Float,
     depthThrough,
@@ -71,6 +71,7 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     cosViewLight,
     viewChord: [depthToCamera, depthBehind] as const,
     verticalChord: [depthAbove, depthBelow] as const,
+    filled: depths.filled,
     resolved: mix(fit.unresolvedChords, 1, resolved) as Float,
     faces: smoothstep(...facingFit.footprints, footprint).oneMinus() as Float
   }

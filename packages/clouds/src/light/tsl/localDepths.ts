@@ -1,8 +1,8 @@
-import { float, int, mix, smoothstep, vec4 } from 'three/tsl'
+import { float, int, mix, smoothstep, vec3 } from 'three/tsl'
 import { footprintOf } from '../../density/tsl/sample'
 import { extinctionNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
-import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
+import { loop, type Float, type Int, type Vec3 } from '../../tsl-types'
 import type { ShadedSample, ShadingContext, ShadingLight } from './shadingContext'
 
 /** Cosine of the lowest light whose rays grow longer with its height. */
@@ -60,6 +60,8 @@ export interface LocalDepths {
   through: Float
   above: Float
   below: Float
+  /** Mean extinction on that ray, from end to end of its clouds, over the layers'; above 1 where there is no map. */
+  filled: Float
 }
 
 /**
@@ -68,7 +70,7 @@ export interface LocalDepths {
  */
 export function localDepths(
   { field, shadows, quality }: ShadingContext,
-  { sample, weather, layers: { base, top, layered } }: ShadedSample,
+  { sample, weather, layers: { base, top, layered, density } }: ShadedSample,
   { direction: toLight, isMapped, cosine: cosLight }: ShadingLight
 ): LocalDepths {
   const [rise, fall] = [top.sub(sample.altitude), sample.altitude.sub(base)].map(length =>
@@ -87,7 +89,7 @@ export function localDepths(
     .min(toTop)
     .toConst() as Float
   /** Extinction at the sample, optical depth towards the light, extinction above. */
-  const found = vec4(0).toVar() as Vec4
+  const found = vec3(0).toVar() as Vec3
   const asked = float(quality.lightSteps).add(lowness.mul(LOW_LIGHT_STEPS).ceil())
   // Steps shorter than a pixel see nothing more.
   const seen = probed.div(footprintOf(field, sample).max(1e-3)).ceil().max(FEWEST_STEPS)
@@ -107,24 +109,21 @@ export function localDepths(
     const extinction = extinctionNearby(field, weather, { offset, altitude, up, distance })
     found.addAssign(
       isUpwards.select(
-        vec4(0, 0, extinction, 0),
-        vec4(index.equal(int(0)).select(extinction, 0), extinction.mul(end.sub(start)), 0, 0)
+        vec3(0, 0, extinction),
+        vec3(index.equal(int(0)).select(extinction, 0), extinction.mul(end.sub(start)), 0)
       )
     )
   })
   const beyond = sample.offset.add(toLight.mul(probed)).toConst() as Vec3
-  const far = sampleShadows(shadows, beyond)
-  const unmapped = far.inMap.mul(isMapped).oneMinus().toConst() as Float
+  const { toLight: far, through: all, stretch, inMap } = sampleShadows(shadows, beyond)
+  const unmapped = inMap.mul(isMapped).oneMinus().toConst() as Float
   // Where no map is: as near, thinning out towards the top.
-  const density = found.y.div(probed).toConst()
+  const mean = found.y.div(probed).toConst()
   const widest = top.sub(base).mul(WIDEST).div(layered.oneMinus().max(1e-3))
-  const guess = density.mul(toTop.min(widest).sub(probed).max(0)).toConst()
-  const depthToLight = found.y
-    .add(far.toLight.mul(isMapped))
-    .add(guess.mul(unmapped))
-    .toConst() as Float
-  const behind = cosLight.greaterThan(0).select(fall, rise).mul(slant).mul(density)
-  const through = far.through
+  const guess = mean.mul(toTop.min(widest).sub(probed).max(0)).toConst()
+  const depthToLight = found.y.add(far.mul(isMapped)).add(guess.mul(unmapped)).toConst() as Float
+  const behind = cosLight.greaterThan(0).select(fall, rise).mul(slant).mul(mean)
+  const through = all
     .mul(isMapped)
     .add(depthToLight.add(behind).mul(unmapped))
     .max(depthToLight)
@@ -133,6 +132,7 @@ export function localDepths(
     toLight: depthToLight,
     through,
     above: above.mul(found.x.mul(ABOVE / 2).add(found.z.mul(0.5))),
-    below: below.mul(found.x).mul(layered.add(1).mul(BELOW))
+    below: below.mul(found.x).mul(layered.add(1).mul(BELOW)),
+    filled: all.mul(all).div(stretch.mul(density).max(1e-6)).add(unmapped)
   }
 }

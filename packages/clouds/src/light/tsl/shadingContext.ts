@@ -32,7 +32,7 @@ export interface ShadedSample {
   /** Part of the light that casters besides the clouds leave, in [0, 1]; left out, all. */
   readonly lit?: Float
   /** The layers around it. */
-  readonly layers: Pick<LayersAt, 'base' | 'top' | 'layered'>
+  readonly layers: Pick<LayersAt, 'base' | 'top' | 'layered' | 'density'>
 }
 
 /** Light source that clouds are shaded for: sun or moon. */

@@ -64,6 +64,7 @@ export function lightPrecipitation(
     depthToLight: toLight,
     depthThrough: through,
     depthAcross: through,
+    depthToCamera: float(0),
     layered,
     cosLight: source.cosine,
     cosView,

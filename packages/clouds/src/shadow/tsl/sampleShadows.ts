@@ -40,6 +40,12 @@ export interface LightDepths {
   inMap: Float
 }
 
+/** Optical depths of a place that is looked up by itself. */
+export interface PlaceDepths extends LightDepths {
+  /** Length of the even stretch that stands for the clouds on the ray [m], times their optical depth. */
+  stretch: Float
+}
+
 /** Parts of a cascade's width that are left out at its edges: bilinear reads would mix in another one's. */
 const MARGIN = 0.02
 
@@ -59,10 +65,11 @@ const NARROWER_END = MAXIMUM_DISTANCE / CASCADE_RATIO
 export function sampleShadows(
   { map, cascades, tileCount, shift }: CloudShadows,
   offset: Vec3
-): LightDepths {
+): PlaceDepths {
   const from = (shift === undefined ? offset : offset.add(shift)).toConst()
   /** Depths to the light, of all layers and of those that cast shadows; through; weight of the map. */
   const found = vec4(0).toVar() as Vec4
+  const stretch = float(0).toVar()
   /** Depths to the light from the end of the next narrower cascade's rays on. */
   const beyond = vec2(0).toVar() as Vec2
   for (const { u, v, w, isDrawn, atlasTile } of cascades.toReversed()) {
@@ -81,11 +88,13 @@ export function sampleShadows(
       .toConst() as Vec4
     const own = texel.zw.mul(shareAbove(texel, above)).add(beyond)
     found.assign(mix(found, vec4(own, texel.z.add(beyond.x), 1), weight))
+    // u's length is 1 over the cascade's width.
+    stretch.assign(mix(stretch, texel.y.div(u.xyz.length()), weight))
     const behind = texel.zw.mul(shareAbove(texel, float(NARROWER_END)))
     beyond.assign(beyond.add(behind).mul(weight))
   }
   const { x: toLight, y: shadow, z: through, w: inMap } = found
-  return { toLight, through, shadow, inMap }
+  return { toLight, through, stretch, shadow, inMap }
 }
 
 /** Share of a texel's clouds that is above a height over the cascade's plane: front and half length come times the depth. */
