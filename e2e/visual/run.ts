@@ -71,7 +71,7 @@ const readPng = (file: string): PNG => PNG.sync.read(readFileSync(file))
 /** Least arcs of the bow in a shower, and of the one about it [°]. */
 const LEAST_BOWS = { primary: 72, secondary: 36 }
 
-/** What is wrong with the subject of a picture, if that can be told. */
+/** Fault of a picture whose subject is not in it; undefined where none is found. */
 function wrongIn(name: string, picture: PNG): string | undefined {
   if (name !== 'rain-bow') return undefined
   const { azimuth, heading, pitch } = VIEWS.bow

@@ -200,7 +200,7 @@ gpuTest(
       const index = int(input.w.add(0.5)).toConst() as Int
       const layer = layerAt(field, index)
       const altitude = layer.baseAltitude.add(layer.thickness.mul(HEIGHT)).toConst() as Float
-      const { up } = field.view.localCoordinates(input.xyz.toConst() as unknown as Vec3)
+      const { up } = field.view.localCoordinates(input.xyz.toConst())
       const offset = input.xyz.add(up.mul(altitude)).toConst() as unknown as Vec3
       const sample: CloudSample = { offset, altitude, up, distance: float(2000) }
       const subpoint = subpointOffset(field, sample).toConst() as Vec3
