@@ -100,15 +100,12 @@ gpuTest(
     const edge = 31
     const nothing = float(0) as Float
     const [reference, ...rows] = await lostIn(renderer, ['reference', ...fast], {
-      distanceAt: at => at.x.mul(size.width).greaterThan(edge).select(20_000, 4000) as Float,
+      distanceAt: at => at.x.mul(size.width).greaterThan(edge).select(20_000, 4000),
       transmittanceAt: () => nothing,
       arrives: () => nothing
     })
     t.note(`lost ${reference[10].toFixed(4)} and ${reference[50].toFixed(4)}`)
-    expectTrue(
-      reference[edge + 1] > 1.5 * reference[edge - 2],
-      'more is lost before the far cloud'
-    )
+    expectTrue(reference[edge + 1] > 1.5 * reference[edge - 2], 'more is lost before the far cloud')
     rows.forEach((row, i) => {
       const errors = row.map((lost, x) => Math.abs(lost / reference[x] - 1)).slice(2, -2)
       const most = Math.max(...errors)
@@ -131,16 +128,16 @@ gpuTest(
       [
         'holes',
         {
-          distanceAt: () => float(near) as Float,
-          transmittanceAt: at => isBetween(at).select(all, none) as Float,
-          arrives: distance => distance.greaterThan(near).select(all, none) as Float
+          distanceAt: () => float(near),
+          transmittanceAt: at => isBetween(at).select(all, none),
+          arrives: distance => distance.greaterThan(near).select(all, none)
         }
       ],
       [
         'small clouds',
         {
-          distanceAt: () => float(near) as Float,
-          transmittanceAt: at => isBetween(at).select(none, all) as Float,
+          distanceAt: () => float(near),
+          transmittanceAt: at => isBetween(at).select(none, all),
           arrives: () => none
         }
       ]

@@ -1,6 +1,9 @@
 import { Vector3 } from 'three'
 import { float, vec2, vec3, vec4 } from 'three/tsl'
-import { LostLightGrid, type LostLight } from '../../../packages/atmosphere/src/shafts/LostLightGrid'
+import {
+  LostLightGrid,
+  type LostLight
+} from '../../../packages/atmosphere/src/shafts/LostLightGrid'
 import {
   columnAt,
   lightRayAt,

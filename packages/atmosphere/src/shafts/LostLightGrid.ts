@@ -254,7 +254,7 @@ export class LostLightGrid {
         const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
         const other = sampleLevel0(this.#texels, at).toConst()
         const apart = other.w.sub(own).toConst()
-        const shown = shownOf(this.beyond(other.w.exp2() as Float))
+        const shown = shownOf(this.beyond(other.w.exp2()))
         const weight = shown.div(apart.mul(apart).add(even)).toConst()
         sums.addAssign(other.mul(weight))
         weights.addAssign(weight)

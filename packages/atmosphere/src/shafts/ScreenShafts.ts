@@ -35,6 +35,13 @@ const MAX_MESH_HEIGHT = 20
 /** Transmittance from which on a foreground is not seen. */
 const CLEAR = 0.99
 
+/** Foreground of a pixel, part of even air beyond what is seen, and octaves by which that may be off. */
+interface Seen {
+  readonly front?: SeenForeground
+  readonly beyond: Float
+  readonly tolerance: Float
+}
+
 /** End of a view ray: displacement in the mapped space of what gives its direction, its length, and how far one sees [m]. */
 interface RayEnd {
   readonly offset: Vec3
@@ -199,25 +206,16 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
-    const { foreground, grid } = this
-    const distance = end.distance.toVar() as Float
-    const beyond = grid.beyond(distance).toVar() as Float
     const ray = this.#rayTo(end)
-    let [tolerance, front]: [Float, SeenForeground?] = [float(0)]
-    if (foreground !== undefined) {
-      const passes = transmittance ?? foreground.transmittanceAt(this.#place)
-      front = this.#frontAt(distance, passes)
-      const isSeen = passes.lessThan(CLEAR).toConst()
-      beyond.assign(beyond.max(this.#isForward))
-      If(isSeen, () => {
-        distance.assign(distance.min(foreground.distanceAt(this.#place, true)))
-        beyond.assign(mix(grid.beyond(distance), beyond, passes))
-      })
-      tolerance = isSeen.select(foreground.tolerance, 0).toConst() as Float
-    }
-    const lost = grid.read(this.#place, beyond, tolerance, (nearer, most) => {
-      distance.assign(distance.mul(nearer).min(most))
-      const to = ray.distance.min(most).toConst() as Float
+    const { front, beyond, tolerance } = this.#seenAt(
+      this.#place,
+      end.distance,
+      true,
+      transmittance
+    )
+    const lost = this.grid.read(this.#place, beyond, tolerance, (nearer, most) => {
+      front?.distance.assign(front.distance.mul(nearer).min(most))
+      const to = ray.distance.min(most).toConst()
       return seenLight(to, front, this.#lightOn(ray), 1 - CLEAR).seen
     })
     return lost.mul(this.#gain.mul(this.#strength))
@@ -242,28 +240,34 @@ export class ScreenShafts implements ScreenShadows {
     return left
   }
 
-  /** A foreground of a pixel: behind it the shadows of materials are dimmed with them. */
-  #frontAt(distance: Float, transmittance: Float): SeenForeground {
-    const behind = transmittance.mul(this.#isForward.oneMinus()).toConst() as Float
-    return { distance, before: transmittance.oneMinus(), behind }
+  /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. */
+  #seenAt(at: Vec2, to: Float, isRough: boolean, transmittance?: Float): Seen {
+    const { foreground, grid } = this
+    const beyond = grid.beyond(to).toVar()
+    if (foreground === undefined) return { beyond, tolerance: float(0) }
+    const passes = transmittance ?? foreground.transmittanceAt(at)
+    const isSeen = passes.lessThan(CLEAR).toConst()
+    const distance = to.toVar()
+    beyond.assign(beyond.max(this.#isForward))
+    If(isSeen, () => {
+      distance.assign(to.min(foreground.distanceAt(at, isRough)))
+      beyond.assign(mix(grid.beyond(distance), beyond, passes))
+    })
+    const behind = passes.mul(this.#isForward.oneMinus()).toConst()
+    const front = { distance, before: passes.oneMinus().toConst(), behind }
+    return { front, beyond, tolerance: isSeen.select(foreground.tolerance, 0).toConst() }
   }
 
   /** Light that the ray of a pixel of the grid loses. */
   #march(renderer: Renderer, at: Vec2, pixel: Vec2): LostLight {
     const { view, shadowedAir, steps } = this.#shafts
-    const { foreground, grid } = this
     const ray = this.#rayTo(this.#endIn(renderer, at))
     const { distance } = ray
+    const { front, beyond } = this.#seenAt(at, distance, false)
     let seen: ShaftRay = ray
-    let beyond = grid.beyond(distance)
-    let front: SeenForeground | undefined
-    if (foreground !== undefined) {
-      const passes = foreground.transmittanceAt(at)
-      const nearest = foreground.distanceAt(at, false).min(distance).toConst() as Float
-      front = this.#frontAt(nearest, passes)
-      beyond = mix(grid.beyond(nearest), beyond.max(this.#isForward), passes)
-      const { behind } = front
-      const before = front.before.add(behind).toConst() as Float
+    if (front !== undefined) {
+      const { behind, distance: nearest } = front
+      const before = front.before.add(behind).toConst()
       seen = {
         ...ray,
         distance: behind.greaterThan(MIN_TRANSMITTANCE).select(distance, nearest).toConst(),
@@ -272,7 +276,7 @@ export class ScreenShafts implements ScreenShadows {
     }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
     const { all, seen: lit } = seenLight(distance, front, this.#lightOn(ray))
-    return { lost: this.#color(lost), lit, all, distance, beyond: beyond.toConst() }
+    return { lost: this.#color(lost), lit, all, distance, beyond }
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */

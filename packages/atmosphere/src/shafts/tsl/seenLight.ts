@@ -34,7 +34,7 @@ export function seenLight(
     const isFront = index.equal(0)
     const part = isFront.select(parts.x, parts.y).toConst()
     If(part.greaterThanEqual(least), () => {
-      all.assign(lightTo(isFront.select(front.distance, distance).toConst() as Float))
+      all.assign(lightTo(isFront.select(front.distance, distance).toConst()))
       seen.addAssign(all.mul(part))
     })
   })
