@@ -1,5 +1,5 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { GridHeights, heightsFromGeoTIFF, Terrain, TerrariumTiles, tileUrl } from '@welkin/terrain'
+import { GridHeights, heightsFromGeoTIFF, Terrain, TerrariumTiles } from '@welkin/terrain'
 import { PerspectiveCamera, Scene, Vector3 } from 'three'
 import { Air } from './air'
 import { prepareShadow } from './globe/sunShadow'
@@ -14,6 +14,7 @@ import {
 import { GroundCamera } from './terrain/GroundCamera'
 import { groundHandle } from './terrain/groundHandle'
 import type { GroundView } from './terrain/viewAlong'
+import { askServer } from './tileServer'
 import { createVillage } from './valley/village'
 
 /** Middle of the made-up village, on level ground between two ridges [°]. */
@@ -71,14 +72,13 @@ export interface RealHeightsArgs extends RendererArgs, TimeArgs {
   view: keyof typeof VIEWS
   /** Template of Terrarium tiles, or a GeoTIFF; empty for the grid that comes with the stories. */
   url: string
+  /** Line that names the source of the tiles. */
+  attribution: string
   wireframe: boolean
 }
 
 /** Fewer cells and texels in a still: a software renderer draws it. */
 const STILL = { resolution: 16, pageMemory: 100, pagesPerFrame: 4 }
-
-/** Time in which the first tile must arrive [ms]. */
-const PATIENCE = 6000
 
 /** Description of the grid in `data/`. */
 interface GridFile {
@@ -124,16 +124,6 @@ async function loadGrid(): Promise<GridHeights> {
   return heights
 }
 
-/** Reason why tiles cannot be used; undefined if the first one arrives. */
-async function problemOf(url: string): Promise<string | undefined> {
-  try {
-    const response = await fetch(tileUrl(url)(0, 0, 0), { signal: AbortSignal.timeout(PATIENCE) })
-    return response.ok ? undefined : `the server answers ${response.status}`
-  } catch (error) {
-    return error instanceof Error ? error.message : String(error)
-  }
-}
-
 /** Heights that are drawn. */
 interface Given {
   readonly heights: GridHeights | TerrariumTiles
@@ -159,7 +149,7 @@ async function openGeoTIFF(url: string): Promise<Given> {
 }
 
 /** Heights of the arguments. */
-async function heightsOf({ url }: RealHeightsArgs): Promise<Given> {
+async function heightsOf({ url, attribution }: RealHeightsArgs): Promise<Given> {
   if (/\.tiff?($|[?#])/i.test(url)) {
     try {
       return await openGeoTIFF(url)
@@ -168,13 +158,14 @@ async function heightsOf({ url }: RealHeightsArgs): Promise<Given> {
       return { heights: grid, note: `No GeoTIFF: ${String(error)}. The local grid instead.` }
     }
   }
-  const problem = url === '' ? undefined : await problemOf(url)
-  if (url !== '' && problem === undefined) {
-    const tiles = new TerrariumTiles(url, { maxZoom: 14 })
-    return { heights: tiles, note: `Tiles of ${new URL(url).host}` }
+  const answer = url === '' ? undefined : await askServer(url, VILLAGE)
+  if (answer !== undefined && 'minZoom' in answer) {
+    const tiles = new TerrariumTiles(url, { minZoom: answer.minZoom, maxZoom: 14, attribution })
+    const { host } = new URL(url, document.baseURI)
+    return { heights: tiles, note: `Tiles of ${host}\n${tiles.attribution}` }
   }
   const grid = await loadGrid()
-  const note = problem === undefined ? '' : `No tiles: ${problem}. The local grid instead.\n`
+  const note = answer === undefined ? '' : `No tiles: ${answer.problem}. The local grid instead.\n`
   return { heights: grid, note: note + grid.attribution }
 }
 

@@ -10,7 +10,7 @@ const meta: Meta<RealHeightsArgs> = {
   render: mount(
     createRealHeights,
     storyCode(['realHeights.scene.ts', 'heights'], ['realHeights.scene.ts', 'GeoTIFF']),
-    ({ url }: RealHeightsArgs) => url
+    ({ url, attribution }: RealHeightsArgs) => url + attribution
   ),
   argTypes: {
     view: { name: 'Place', ...choiceOf(VIEWS) },
@@ -20,6 +20,11 @@ const meta: Meta<RealHeightsArgs> = {
       description:
         'Template with {z}, {x} and {y}, such as https://…/{z}/{x}/{y}.png, or a GeoTIFF in degrees, such as https://…/heights.tif; empty for the local grid'
     },
+    attribution: {
+      name: 'Source of the tiles',
+      control: 'text',
+      description: 'Line that is shown with tiles of a server'
+    },
     wireframe: { name: 'Wireframe', control: 'boolean' },
     ...timeArgTypes,
     ...rendererArgTypes
@@ -27,6 +32,7 @@ const meta: Meta<RealHeightsArgs> = {
   args: {
     view: 'village',
     url: '',
+    attribution: '',
     wireframe: false,
     day: Date.UTC(2026, 5, 21),
     hour: 22,

@@ -94,8 +94,9 @@ function shadePixels(
     const { at, noise } = marchedPixel(viewRays)
     const here = uv() as unknown as Vec2
     const found = cast.pointsAt(here)
-    const fallen = fall?.read(here)
-    const ray = fallen?.ray ?? cast.rayAt(here).ray
+    const { ray: ofClouds } = cast.rayAt(here)
+    const fallen = fall?.read(here, ofClouds)
+    const ray = fallen?.ray ?? ofClouds
     color.assign(vec4(0, 0, 0, 1))
     const { code, steps } = unpackFound(ray.w)
     distances.assign(vec4(ray.xy, code, steps))
@@ -135,10 +136,7 @@ export class CloudRenderer {
   readonly #fall: FallPass | undefined
   readonly #march: FragmentPass
   readonly #precipitation: PrecipitationShafts | undefined
-  /** Light without what falls, and with it. */
-  readonly #shades: readonly FragmentPass[]
-  /** False until both are compiled: rain begins without a stutter. */
-  #isCompiled = false
+  readonly #shade: FragmentPass
   readonly #gather: FragmentPass
   readonly #upscale: readonly FragmentPass[]
   /** Clouds of the pixels that this frame has marched, not lit. */
@@ -165,10 +163,11 @@ export class CloudRenderer {
     this.#cast = new CastLight(scene, this.seen)
     this.#precipitation = precipitation
     this.#fall = precipitation?.passOf(scene, this.seen, this.#cast)
-    const shade = (fall?: FallPass): FragmentPass =>
-      new FragmentPass('Welkin.CloudsShade', shadePixels(scene, this.seen, this.#cast, fall))
-    this.#shades = this.#fall ? [shade(), shade(this.#fall)] : [shade()]
-    for (const { material } of [this.#march, ...this.#shades]) {
+    this.#shade = new FragmentPass(
+      'Welkin.CloudsShade',
+      shadePixels(scene, this.seen, this.#cast, this.#fall)
+    )
+    for (const { material } of [this.#march, this.#shade]) {
       const key = material.customProgramCacheKey.bind(material)
       material.customProgramCacheKey = () => key() + kindsOf(field) + this.#cast.version
     }
@@ -215,7 +214,8 @@ export class CloudRenderer {
     this.#weatherMap.render(renderer, up)
     this.#march.render(renderer, this.#marchedTarget)
     this.#cast.render(renderer)
-    this.#light(renderer)
+    this.#fall?.render(renderer, this.#precipitation?.isFalling === true)
+    this.#shade.render(renderer, this.#shadedTarget)
     this.#gather.render(renderer, this.#cellsTarget)
     this.#current = 1 - this.#current
     const target = this.#accumulatedTargets[this.#current]
@@ -225,25 +225,13 @@ export class CloudRenderer {
     this.accumulated.distances.value = distances
   }
 
-  /** Lights what was marched, with what falls where anything does. */
-  #light(renderer: Renderer): void {
-    const [dry, wet] = this.#shades
-    const isWet = this.#precipitation?.isFalling
-    if (isWet || !this.#isCompiled) this.#fall?.render(renderer)
-    const last = isWet ? wet : dry
-    for (const shade of this.#isCompiled ? [last] : [dry, wet, last])
-      shade?.render(renderer, this.#shadedTarget)
-    this.#isCompiled = true
-  }
-
   /** Compiles passes with code for storms anew where layers of storms come or go, and the light's pass where casters do. */
   #compile(): void {
     const kinds = kindsOf(this.#field)
     const { version } = this.#cast
     if (kinds !== this.#kinds) this.#march.material.needsUpdate = true
     if (kinds !== this.#kinds || version !== this.#castVersion) {
-      for (const { material } of this.#shades) material.needsUpdate = true
-      this.#isCompiled = false
+      this.#shade.material.needsUpdate = true
       if (this.#fall) this.#fall.version = kinds + version
     }
     this.#kinds = kinds
@@ -252,12 +240,11 @@ export class CloudRenderer {
 
   /** Frees the render targets. */
   dispose(): void {
-    this.#isCompiled = false
     this.#weatherMap.dispose()
     this.#cast.dispose()
     this.#fall?.dispose()
     for (const target of this.#targets) target.dispose()
-    for (const pass of [this.#march, ...this.#shades, this.#gather, ...this.#upscale]) {
+    for (const pass of [this.#march, this.#shade, this.#gather, ...this.#upscale]) {
       pass.dispose()
     }
   }

@@ -7,6 +7,7 @@ import { CORNERS } from '../temporal/tsl/cells'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { encodeDistance } from '../temporal/tsl/packing'
 import type { Float, LevelTexture, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
+import { number } from '../uniforms'
 import { fallBlockOf } from './FrameUniforms'
 import type { FallOnRays, LitRays } from './tsl/fallOnRays'
 import type { MarchedTargets } from './tsl/marchedPixel'
@@ -49,6 +50,10 @@ export class FallPass {
   readonly #spreadTarget = fallTarget('FallSpread')
   readonly #passes: readonly FragmentPass[]
   readonly #spread: readonly LevelTexture<Vec2>[]
+  /** 1 while anything falls, else 0: textures are of an earlier frame. */
+  readonly #falls = number()
+  /** False until the passes were drawn, even if nothing falls: rain begins without a stutter. */
+  #isCompiled = false
 
   constructor(scene: FallScene, precipitation: FallOnRays, marched: MarchedTargets, cast: LitRays) {
     this.#frame = scene.viewRays.frame
@@ -64,6 +69,7 @@ export class FallPass {
 
   /** Compiles the passes anew where casters have changed. */
   set version(version: string) {
+    this.#isCompiled = false
     for (const { material } of this.#passes) {
       material.customProgramCacheKey = () => material.name + version
       material.needsUpdate = true
@@ -77,26 +83,35 @@ export class FallPass {
     this.#spreadTarget.setSize(width, height)
   }
 
-  /** Draws the passes; the march and the casters' light go first. */
-  render(renderer: Renderer): void {
+  /** Draws the passes where anything falls; the march and the casters' light go first. */
+  render(renderer: Renderer, isFalling: boolean): void {
+    this.#falls.value = Number(isFalling)
+    if (this.#isCompiled && !isFalling) return
+    this.#isCompiled = true
     const [draw, spread] = this.#passes
     draw.render(renderer, this.#target)
     spread.render(renderer, this.#spreadTarget)
   }
 
-  /** Precipitation before and behind the clouds of a pixel. To be called inside of a shader function. */
-  read(here: Vec2): FallOnPixel {
+  /**
+   * Precipitation before and behind the clouds of a pixel. To be called inside of a shader function.
+   *
+   * @param clouds - The pixel's ray, with clouds alone.
+   */
+  read(here: Vec2, clouds: Vec4): FallOnPixel {
+    const falls = this.#falls.greaterThan(0).toConst()
     const [light, ray] = this.#spread.map(each => each.sample(here).level(0).toConst() as Vec4)
     const found = ray.w.floor().toConst() as Float
     return {
-      radiance: light.div(this.#frame.nightGain).toConst(),
-      before: ray.w.sub(found).div(BEHIND).toConst(),
-      ray: vec4(ray.xyz, found.div(FOUND)).toConst()
+      radiance: falls.select(light.div(this.#frame.nightGain), vec4(0)).toConst(),
+      before: falls.select(ray.w.sub(found).div(BEHIND), 1).toConst(),
+      ray: falls.select(vec4(ray.xyz, found.div(FOUND)), clouds).toConst()
     }
   }
 
   /** Frees its textures. */
   dispose(): void {
+    this.#isCompiled = false
     for (const each of [this.#target, this.#spreadTarget, ...this.#passes]) each.dispose()
   }
 }
