@@ -8,6 +8,7 @@ import {
   placeOf,
   squareFrom,
   stormGaps,
+  stormRank,
   type StormGaps,
   type StormNearby
 } from './stormNearby'
@@ -115,7 +116,6 @@ export function stormAround(
   radius: Float,
   nearby: StormNearby
 ): StormAround {
-  const { scale, power } = stormPlaces
   const { at, zenith, downwind } = placeAmongStorms(layer, subpoint, up, bent, radius)
   const found: StormGaps = { anvil: nearby.anvil.sub(at), tower: nearby.tower.sub(at) }
   const cells = squareFrom(found.anvil.toConst(), zenith).sqrt().toConst() as Float
@@ -127,7 +127,7 @@ export function stormAround(
     // From that anvil's own tower, not the nearest.
     fibrePlace: fibrePlace(at.add(found.anvil), downwind.sub(found.anvil), zenith, length),
     zenith,
-    rank: cells.div(scale).max(1e-4).pow(power).negate().exp().toConst()
+    rank: stormRank(cells)
   }
 }
 

@@ -108,12 +108,9 @@ export const cellLength = (layer: LayerNodes): Float =>
     .reciprocal()
     .toConst()
 
-/** Rank of a distance [m] from the nearest storm among all places of the planet, in [0, 1]: 1 at none. */
-export const stormRankAt = (layer: LayerNodes, distance: Float): Float => {
-  const { scale, power } = stormPlaces
-  const inScales = distance.div(cellLength(layer).mul(scale)).max(1e-4)
-  return inScales.pow(power).negate().exp()
-}
+/** Rank of a distance [cells] from the nearest storm among all places of the planet, in [0, 1]: 1 at none. */
+export const stormRank = (cells: Float): Float =>
+  cells.div(stormPlaces.scale).max(1e-4).pow(stormPlaces.power).negate().exp().toConst()
 
 /**
  * Radius of storms where a background of the weather is [m]: their rims have the rank that their coverage asks for.

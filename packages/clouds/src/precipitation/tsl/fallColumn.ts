@@ -3,7 +3,7 @@ import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
 import { resolutionAt } from '../../density/tsl/resolution'
 import { ifStorm } from '../../density/tsl/storm'
-import { stormRankAt } from '../../density/tsl/stormNearby'
+import { cellLength, stormRank } from '../../density/tsl/stormNearby'
 import { cloudWeather } from '../../density/tsl/weather'
 import { unpackBackground, type PackedBackground } from '../../density/tsl/weatherBackground'
 import { layout, type Float, type Variable, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
@@ -64,9 +64,10 @@ export function fallColumn(
     () => {
       // A storm's rain falls about its tower, which stands aside of its anvil.
       const { towerDistance, stormRadius } = weather
+      const length = cellLength(layer)
       const kept = resolution.cloudsLost.oneMinus().sqrt()
-      const nearer = stormRankAt(layer, towerDistance).sub(0.5).mul(kept).sub(0.5).negate()
-      const clouded = stormRankAt(layer, stormRadius).oneMinus().max(1e-5)
+      const nearer = stormRank(towerDistance.div(length)).sub(0.5).mul(kept).sub(0.5).negate()
+      const clouded = stormRank(stormRadius.div(length)).oneMinus().max(1e-5)
       const grown = smoothstep(0, columnForm.grown, stormRadius.div(layer.thickness))
       stronger.assign(nearer.div(clouded).pow(columnForm.near).div(grown.max(1e-3)))
     },
