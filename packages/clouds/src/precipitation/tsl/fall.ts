@@ -1,4 +1,4 @@
-import { Fn, If, float, smoothstep, vec2 } from 'three/tsl'
+import { Break, Fn, If, float, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import { billows, levelOf } from '../../density/tsl/billows'
 import type { LayerNodes } from '../../density/tsl/layer'
@@ -7,7 +7,15 @@ import { backgroundAt } from '../../density/tsl/sampler'
 import { strengthForm } from '../../density/formConstants'
 import type { WeatherMap } from '../../density/WeatherMap'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
-import { layout, type Float, type Variable, type Vec2, type Vec3 } from '../../tsl-types'
+import {
+  layout,
+  loop,
+  type Bool,
+  type Float,
+  type Variable,
+  type Vec2,
+  type Vec3
+} from '../../tsl-types'
 import { extinctionForm, fallForm, streakBound, STRONGEST } from '../fallForm'
 import { fallColumn, type FallNodes } from './fallColumn'
 
@@ -196,14 +204,18 @@ export function fallenFrom(
     const footprint = distance.mul(field.pixelAngle).toConst() as Float
     const place: FallPlace = { field, map, layer, nodes, sample, depth, footprint }
     const lag = fallLag(altitude, layer.baseAltitude, nodes.freezingLevel).toConst() as Vec2
-    const fallen = fallAlong(lag, place)
-    rank.assign(fallen.rank)
-    rate.assign(fallen.rate)
-    If(nodes.hail.greaterThan(0), () => {
-      rate.mulAssign(nodes.hail.mul(hailShare(rank)).oneMinus())
-      const stones = fallAlong(vec2(depth.mul(depth).div(fallForm.hailSpeed), depth), place)
-      hail.assign(stones.rate.mul(nodes.hail).mul(hailShare(stones.rank)))
-      rank.assign(rank.max(stones.rank))
+    const lagOfHail = vec2(depth.mul(depth).div(fallForm.hailSpeed), depth).toConst() as Vec2
+    // One copy of the code for both: with two, WebGL compiles three times as long.
+    loop('fallKind', 2, kind => {
+      const isHail = kind.greaterThan(0).toConst() as Bool
+      If(isHail.and(nodes.hail.lessThanEqual(0)), () => {
+        Break()
+      })
+      const fallen = fallAlong(isHail.select(lagOfHail, lag), place)
+      const share = nodes.hail.mul(hailShare(fallen.rank)).toConst() as Float
+      rank.assign(rank.max(fallen.rank))
+      rate.addAssign(isHail.select(0, fallen.rate.mul(share.oneMinus())))
+      hail.addAssign(isHail.select(fallen.rate.mul(share), 0))
     })
   })
   return { rate, hail, snow: snowShare(altitude, nodes.freezingLevel), rank }
