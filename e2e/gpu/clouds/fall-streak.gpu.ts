@@ -1,7 +1,7 @@
 import { vec4 } from 'three/tsl'
 import { streakOf } from '../../../packages/clouds/test/twins/precipitation'
 import { fallForm, STRONGEST } from '../../../packages/clouds/src/precipitation/fallForm'
-import { fallStreak } from '../../../packages/clouds/src/precipitation/tsl/fall'
+import { fallStreak } from '../../../packages/clouds/src/precipitation/tsl/fallStreak'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'

@@ -13,7 +13,7 @@ import { advance, enterSteps, nextSteps, stepState } from './steps'
 /**
  * Number of layers from which a ray has a loop in a loop: rays side by side then wait for each other at each boundary, and
  * so run the code of the same layer. Fewer: slower with one layer, and software renderers take long to compile it;
- * more: skies of several layers take half as long again.
+ * more: skies of several layers take half as long again. Environment maps, drawn now and then, never have it.
  */
 const NESTED_FROM = 3
 
@@ -78,7 +78,7 @@ export function marchClouds(
   const first = float(0).toVar()
 
   const { length } = field.layers
-  const isNested = weatherMap !== undefined && length >= NESTED_FROM
+  const isNested = known !== undefined && length >= NESTED_FROM
   const isDone = (until: Float): Bool => {
     const isSeen = seen.transmittance.lessThan(LEAST_TRANSMITTANCE)
     const isOver = position.greaterThanEqual(until).or(isSeen)

@@ -1,4 +1,4 @@
-import { Break, Fn, If, float, smoothstep, vec2 } from 'three/tsl'
+import { Fn, If, float, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import { billows, levelOf } from '../../density/tsl/billows'
 import type { LayerNodes } from '../../density/tsl/layer'
@@ -12,12 +12,14 @@ import {
   loop,
   type Bool,
   type Float,
+  type Int,
   type Variable,
   type Vec2,
   type Vec3
 } from '../../tsl-types'
-import { extinctionForm, fallForm, streakBound, STRONGEST } from '../fallForm'
+import { extinctionForm, fallForm } from '../fallForm'
 import { fallColumn, type FallNodes } from './fallColumn'
+import { fallStreak } from './fallStreak'
 
 /** Precipitation at a place. */
 export interface Fallen {
@@ -78,29 +80,6 @@ export const fallRate = /*#__PURE__*/ Fn(
     streak: 'float',
     depth: 'float'
   })
-)
-
-/** Deviation of the streaks' noise near by. */
-const STREAK_DEVIATION = Math.hypot(fallForm.coarseStreaks, fallForm.fineStreaks)
-
-/**
- * Rate of a streak over that of its column: of a normal distribution of logarithms, as rates of rain have, cut off at `STRONGEST`, with
- * mean 1. Twin: test/twins/precipitation.ts
- *
- * @param noise - Sum of billows, whose variance is that of `fallForm` where none are lost.
- * @param amount - Factor of the noise.
- * @param lost - Share of the billows' deviation that blur has taken, in [0, 1].
- * @see Crow & Shimizu 1988, "Lognormal distributions", chapter 8, "Applications in atmospheric sciences"
- */
-export const fallStreak = /*#__PURE__*/ Fn(
-  ([noise, amount, lost]: [Float, Float, Float]) => {
-    const deviation = amount.mul(lost.oneMinus()).mul(STREAK_DEVIATION).toConst()
-    const { from, factor } = streakBound
-    const cut = deviation.sub(from).max(0).toConst()
-    const median = cut.mul(cut).mul(factor).sub(deviation.mul(deviation).div(2))
-    return noise.mul(amount).add(median).exp().min(STRONGEST)
-  },
-  layout('precipitationStreak', 'float', { noise: 'float', amount: 'float', lost: 'float' })
 )
 
 /**
@@ -206,11 +185,9 @@ export function fallenFrom(
     const lag = fallLag(altitude, layer.baseAltitude, nodes.freezingLevel).toConst() as Vec2
     const lagOfHail = vec2(depth.mul(depth).div(fallForm.hailSpeed), depth).toConst() as Vec2
     // One copy of the code for both: with two, WebGL compiles three times as long.
-    loop('fallKind', 2, kind => {
+    const kinds = nodes.hail.greaterThan(0).toInt().add(1) as Int
+    loop('fallKind', kinds, kind => {
       const isHail = kind.greaterThan(0).toConst() as Bool
-      If(isHail.and(nodes.hail.lessThanEqual(0)), () => {
-        Break()
-      })
       const fallen = fallAlong(isHail.select(lagOfHail, lag), place)
       const share = nodes.hail.mul(hailShare(fallen.rank)).toConst() as Float
       rank.assign(rank.max(fallen.rank))
