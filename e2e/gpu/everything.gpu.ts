@@ -325,7 +325,7 @@ gpuTest(
     checkTextures(t, shaders)
     world.dispose()
   },
-  { timeoutSeconds: 420 }
+  { timeoutSeconds: 300 }
 )
 
 gpuTest(
@@ -351,5 +351,5 @@ gpuTest(
     checkTextures(t, shaders)
     world.dispose()
   },
-  { timeoutSeconds: 420 }
+  { timeoutSeconds: 300 }
 )
