@@ -4,11 +4,16 @@ export const falling = [
     name: 'shower',
     about:
       'a storm aside: diffuse slanting curtains under its base with gaps between, dark before the bright sky, no box edges',
-    clouds: { preset: 'shower', layer: { precipitation: { rate: 12, streaks: 2 } } },
-    place: { longitude: 140.376, latitude: 36.99 },
+    clouds: {
+      preset: 'shower',
+      coverage: 0.2,
+      layer: { baseAltitude: 1500, precipitation: { rate: 12 } }
+    },
+    place: { longitude: 140.6426, latitude: 35.2626 },
     altitude: 60,
-    sun: { elevation: 30, azimuth: 280 },
-    view: { azimuth: 20, pitch: 10 },
+    sun: { elevation: 30, azimuth: 180 },
+    view: { azimuth: 90, pitch: 10 },
+    fieldOfView: 62,
     land: 'hills'
   },
   {
@@ -39,13 +44,15 @@ export const falling = [
         density: 0.006,
         weatherScale: 0.6,
         shapeScale: 0.8,
-        precipitation: { rate: 4, share: 0.9, virgaDepth: 3000, freezingLevel: 0, streaks: 2 }
+        wind: { east: 9, north: -2 },
+        precipitation: { rate: 4, share: 0.9, virgaDepth: 900, freezingLevel: 0, streaks: 2 }
       }
     },
-    place: { longitude: 20, latitude: 45 },
+    place: { longitude: 20.6, latitude: 45.6 },
     altitude: 60,
-    sun: { elevation: 6, azimuth: 350 },
-    view: { azimuth: 60, pitch: 20 },
+    sun: { elevation: 6, azimuth: 290 },
+    view: { azimuth: 340, pitch: 16 },
+    fieldOfView: 62,
     land: 'hills'
   },
   {
