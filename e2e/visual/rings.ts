@@ -17,7 +17,7 @@ export interface Ring {
   readonly about: 'sun' | 'opposite'
   readonly band: Band
   readonly sides: readonly [Band, Band]
-  /** What the band has more of than its sides: red less blue, or light. */
+  /** Quantity of which the band has more than its sides: red less blue, or light. */
   readonly has: 'red' | 'light'
   /** Length of arcs that are looked at one by one [°]. */
   readonly arc: number

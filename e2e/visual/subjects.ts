@@ -18,7 +18,7 @@ const viewOf = ({ lens = SKY_LENS, pitch, sun, azimuth }: View): RingView => ({
 
 const { azimuth, heading, pitch } = VIEWS.bow
 
-/** By the names of pictures. */
+/** Subjects by the names of their pictures. */
 const subjects: Record<string, Subject> = {
   'rain-bow': {
     view: { fieldOfView: FIELD_OF_VIEW, pitch, sun: BOW_SUN, aside: azimuth - heading },
