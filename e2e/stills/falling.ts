@@ -76,9 +76,12 @@ export const falling = [
   {
     name: 'nimbostratus',
     about:
-      'steady rain from a closed deck: grey bands from its ragged base to the hills, which fade one behind the other',
-    clouds: { preset: 'nimbostratus' },
-    place: { longitude: 20, latitude: 45 },
+      'steady rain that begins some kilometres ahead: grey bands from a closed deck to the hills, which fade one behind the other',
+    clouds: {
+      preset: 'nimbostratus',
+      layer: { precipitation: { rate: 3, share: 0.6, streaks: 2 } }
+    },
+    place: { longitude: 22.3, latitude: 46.7 },
     altitude: 60,
     sun: { elevation: 35, azimuth: 280 },
     view: { azimuth: 30, pitch: 7 },
