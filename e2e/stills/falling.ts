@@ -58,19 +58,17 @@ export const falling = [
   {
     name: 'snow-shower',
     about:
-      'snow below clouds that are bright in a low sun and dark at their bases, grey veils between them',
+      'snow that trails far behind its clouds: towers bright in a low sun, bases dark, grey veils swept aside under them',
     clouds: {
       preset: 'snowShower',
-      coverage: 0.15,
-      layer: {
-        wind: { east: 5, north: 2 },
-        precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0, streaks: 2 }
-      }
+      coverage: 0.1,
+      layer: { precipitation: { rate: 1.5, freezingLevel: 0 } }
     },
-    place: { longitude: 140.6798, latitude: 35.2496 },
+    place: { longitude: 20, latitude: 45 },
     altitude: 60,
-    sun: { elevation: 14, azimuth: 206 },
-    view: { azimuth: 60, pitch: 9 },
+    sun: { elevation: 18, azimuth: 280 },
+    view: { azimuth: 20, pitch: 9 },
+    fieldOfView: 62,
     land: 'snow'
   },
   {
