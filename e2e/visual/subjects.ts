@@ -19,7 +19,7 @@ const viewOf = ({ lens = SKY_LENS, pitch, sun, azimuth }: View): RingView => ({
 const { azimuth, heading, pitch } = VIEWS.bow
 
 /** Subjects by the names of their pictures. */
-const subjects: Record<string, Subject> = {
+const subjects: Partial<Record<string, Subject>> = {
   'rain-bow': {
     view: { fieldOfView: FIELD_OF_VIEW, pitch, sun: BOW_SUN, aside: azimuth - heading },
     least: { primary: 72, secondary: 36 }
@@ -31,10 +31,11 @@ const subjects: Record<string, Subject> = {
 
 /** Fault of a picture whose subject is not in it; undefined where none is found. */
 export function wrongIn(name: string, picture: PNG): string | undefined {
-  const { view, least = {} } = subjects[name] ?? {}
-  const missing = Object.entries(least).flatMap(([ring, most]) => {
-    const seen = degreesOf(RINGS[ring as keyof typeof RINGS], picture, view!)
-    return seen < most ? [`${seen}° of its ${ring}, not ${most}°`] : []
+  const subject = subjects[name]
+  if (subject === undefined) return undefined
+  const missing = Object.entries(subject.least).flatMap(([ring, least]) => {
+    const seen = degreesOf(RINGS[ring as keyof typeof RINGS], picture, subject.view)
+    return seen < least ? [`${seen}° of its ${ring}, not ${least}°`] : []
   })
   return missing.length > 0 ? `one sees ${missing.join(', ')}` : undefined
 }
