@@ -7,6 +7,8 @@ export interface BuiltPipeline {
   name: string
   vertex: ShaderStats
   fragment: ShaderStats
+  /** Source of the fragment shader. */
+  source: string
   /** Time from nothing to a compiled pipeline: generating the shader, and compiling it; wall-clock [ms]. */
   ms: number
 }
@@ -60,6 +62,7 @@ export function traceShaders(renderer: WebGPURenderer): readonly BuiltPipeline[]
         name: object.material.name || object.material.type,
         vertex: shaderStats(vertexShader),
         fragment: shaderStats(fragmentShader),
+        source: fragmentShader,
         ms: ms + (generation.get(object) ?? 0)
       })
     }

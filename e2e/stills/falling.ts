@@ -4,11 +4,16 @@ export const falling = [
     name: 'shower',
     about:
       'a storm aside: diffuse slanting curtains under its base with gaps between, dark before the bright sky, no box edges',
-    clouds: { preset: 'shower', layer: { precipitation: { rate: 12, streaks: 2 } } },
-    place: { longitude: 140.376, latitude: 36.99 },
+    clouds: {
+      preset: 'shower',
+      coverage: 0.2,
+      layer: { baseAltitude: 1500, precipitation: { rate: 12 } }
+    },
+    place: { longitude: 140.6426, latitude: 35.2626 },
     altitude: 60,
-    sun: { elevation: 30, azimuth: 280 },
-    view: { azimuth: 20, pitch: 10 },
+    sun: { elevation: 30, azimuth: 180 },
+    view: { azimuth: 90, pitch: 10 },
+    fieldOfView: 62,
     land: 'hills'
   },
   {
@@ -39,39 +44,42 @@ export const falling = [
         density: 0.006,
         weatherScale: 0.6,
         shapeScale: 0.8,
-        precipitation: { rate: 4, share: 0.9, virgaDepth: 3000, freezingLevel: 0, streaks: 2 }
+        wind: { east: 9, north: -2 },
+        precipitation: { rate: 4, share: 0.9, virgaDepth: 900, freezingLevel: 0, streaks: 2 }
       }
     },
-    place: { longitude: 20, latitude: 45 },
+    place: { longitude: 20.6, latitude: 45.6 },
     altitude: 60,
-    sun: { elevation: 6, azimuth: 350 },
-    view: { azimuth: 60, pitch: 20 },
+    sun: { elevation: 6, azimuth: 290 },
+    view: { azimuth: 340, pitch: 16 },
+    fieldOfView: 62,
     land: 'hills'
   },
   {
     name: 'snow-shower',
     about:
-      'snow below clouds that are bright in a low sun and dark at their bases, grey veils between them',
+      'snow that trails far behind its clouds: towers bright in a low sun, bases dark, grey veils swept aside under them',
     clouds: {
       preset: 'snowShower',
-      coverage: 0.15,
-      layer: {
-        wind: { east: 5, north: 2 },
-        precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0, streaks: 2 }
-      }
+      coverage: 0.1,
+      layer: { precipitation: { rate: 1.5, freezingLevel: 0 } }
     },
-    place: { longitude: 140.6798, latitude: 35.2496 },
+    place: { longitude: 20, latitude: 45 },
     altitude: 60,
-    sun: { elevation: 14, azimuth: 206 },
-    view: { azimuth: 60, pitch: 9 },
+    sun: { elevation: 18, azimuth: 280 },
+    view: { azimuth: 20, pitch: 9 },
+    fieldOfView: 62,
     land: 'snow'
   },
   {
     name: 'nimbostratus',
     about:
-      'steady rain from a closed deck: grey bands from its ragged base to the hills, which fade one behind the other',
-    clouds: { preset: 'nimbostratus' },
-    place: { longitude: 20, latitude: 45 },
+      'steady rain that begins some kilometres ahead: grey bands from a closed deck to the hills, which fade one behind the other',
+    clouds: {
+      preset: 'nimbostratus',
+      layer: { precipitation: { rate: 3, share: 0.6, streaks: 2 } }
+    },
+    place: { longitude: 22.3, latitude: 46.7 },
     altitude: 60,
     sun: { elevation: 35, azimuth: 280 },
     view: { azimuth: 30, pitch: 7 },

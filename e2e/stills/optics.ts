@@ -6,7 +6,7 @@ export const optics = [
       'from an aeroplane over a bright deck, the sun behind: its shadow, and about it coloured rings of 1 to 4°, red outside',
     clouds: {
       preset: 'overcast',
-      layer: { density: 0.012, shapeAmount: 0.7, edgeSoftness: 0.5 }
+      layer: { density: 0.006, shapeAmount: 0.25, edgeSoftness: 0.6 }
     },
     shafts: true,
     aeroplane: true,
@@ -23,7 +23,10 @@ export const optics = [
     name: 'optics-cloudbow',
     about:
       'the same deck with a wide lens: the glory in the middle, about it a pale bow of 40°, on all sides',
-    clouds: { preset: 'overcast', layer: { density: 0.004 } },
+    clouds: {
+      preset: 'overcast',
+      layer: { density: 0.004, shapeAmount: 0.25, edgeSoftness: 0.6 }
+    },
     dropletRadius: 12,
     altitude: 2600,
     sun: { elevation: 45, azimuth: 210 },
@@ -45,12 +48,18 @@ export const optics = [
   {
     name: 'optics-corona',
     about:
-      'the sun behind thin clouds: an aureole of 2°, white and then brown at its edge, pale rings around',
-    clouds: { preset: 'altocumulus', coverage: 0.6 },
+      'the sun behind a thin even cloud: an aureole of 3°, white and then brown at its edge, coloured rings around',
+    clouds: {
+      preset: 'altocumulus',
+      coverage: 1,
+      layer: { density: 0.0012, shapeAmount: 0.2, edgeSoftness: 0.8 }
+    },
     dropletRadius: 6,
     altitude: 2,
     sun: { elevation: 28, azimuth: 30 },
-    view: { azimuth: 34, pitch: 24 },
+    view: { azimuth: 30, pitch: 28 },
+    fieldOfView: 24,
+    compensation: -1.5,
     land: 'hills'
   }
 ] as const

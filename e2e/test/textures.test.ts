@@ -49,7 +49,7 @@ import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
 import { readFileSync } from 'node:fs'
 import { expect, it } from 'vitest'
 import { recordingRenderer } from '../headless/recordingContext'
-import { traceShaders } from '../headless/traceShaders'
+import { traceShaders, type BuiltPipeline } from '../headless/traceShaders'
 
 // What three asks of a browser.
 Object.assign(globalThis, {
@@ -95,15 +95,27 @@ class World {
   }
 }
 
-/** Most textures that shaders of a name sample while something is drawn. */
-async function count(name: string, draw: (renderer: WebGPURenderer) => () => void) {
+/** Pipelines of a name that are made while something is drawn. */
+async function pipelinesOf(
+  name: string,
+  draw: (renderer: WebGPURenderer) => () => void
+): Promise<BuiltPipeline[]> {
   const renderer = await recordingRenderer(16, 9)
   renderer.shadowMap.enabled = true
   const built = traceShaders(renderer)
   const frame = draw(renderer)
   for (let i = 0; i < FRAMES; i++) frame()
   await renderer.dispose()
-  return Math.max(...built.filter(each => each.name === name).map(each => each.fragment.textures))
+  return built.filter(each => each.name === name)
+}
+
+/** Most textures that shaders of a name sample while something is drawn. */
+async function count(
+  name: string,
+  draw: (renderer: WebGPURenderer) => () => void
+): Promise<number> {
+  const built = await pipelinesOf(name, draw)
+  return Math.max(...built.map(({ fragment }) => fragment.textures))
 }
 
 /** Textures of the lit material, with something added. */
@@ -270,6 +282,45 @@ it('features of the clouds sample as many textures as their README says', async 
     cloudSkyLight(world.sky, world.clouds())
   })
   expect(['–', `${dimmed - lit}`]).toEqual(stated('clouds', '`cloudSkyLight`'))
+})
+
+/** Look-ups of textures in a shader's `main`, by the conditions and loops that they stand in, outermost first. */
+function readsOf(source: string): string[] {
+  const around: string[] = []
+  const reads: string[] = []
+  for (const line of source.slice(source.indexOf('void main')).split('\n')) {
+    if (line.includes('}')) around.pop()
+    if (line.includes('{')) around.push(line.trim())
+    const [, name] = /texture\w*\( (\w+),/.exec(line) ?? []
+    if (name !== undefined) reads.push([...around.slice(1), name].join(' '))
+  }
+  return reads
+}
+
+it('a bow costs nothing where none is: it is looked up once, on rays that have met rain', async () => {
+  const [smooth, bowed] = await Promise.all(
+    [undefined, raindrops()].map(async drops => {
+      const [{ source }] = await pipelinesOf('Welkin.CloudsFall', renderer => {
+        const { air, depth, camera, atmosphere } = new World()
+        const pipeline = new RenderPipeline(renderer)
+        const precipitation = precipitationShafts({ drops })
+        const layers = cloudPreset('shower')
+        pipeline.outputNode = clouds(air, depth, camera, atmosphere, layers, { precipitation })
+        return () => pipeline.render()
+      })
+      return readsOf(source)
+    })
+  )
+  expect(bowed.length).toBe(smooth.length + 1)
+  const textures = (reads: readonly string[]): (string | undefined)[] =>
+    reads.map(read => read.split(' ').at(-1))
+  const phase = bowed.filter((_, i) => {
+    const name = textures(bowed)[i]
+    return textures(bowed).filter(each => each === name).length === 1
+  })
+  // Not in the march's loop, and behind the condition that something was met.
+  const added = phase.filter(read => /^if \( \( \w+\.x > 0\.0001 \) \) \{ \w+$/.test(read))
+  expect(added).toHaveLength(1)
 })
 
 it('a shader that samples too many textures throws in drawing, and says what samples them', async () => {

@@ -16,9 +16,8 @@ import { outputFolder, Report } from '../harness/report'
 import { replaceModules } from '../harness/replaceModules'
 import { serveStatic } from '../harness/serve'
 import { shadowSizePlugin } from '../harness/shadow-size'
-import { BOW_SUN, FIELD_OF_VIEW, VIEWS } from '../../stories/src/rainViews'
-import { bowsIn } from './bow'
 import { compare, isBlank } from './compare'
+import { wrongIn } from './subjects'
 
 const viewport = { width: 320, height: 180 }
 /** Longest that a picture may take: some 20 s alone, and several times that beside others on a busy machine. */
@@ -67,23 +66,6 @@ function writePng(file: string, png: PNG): number {
 }
 
 const readPng = (file: string): PNG => PNG.sync.read(readFileSync(file))
-
-/** Least arcs of the bow in a shower, and of the one about it [°]. */
-const LEAST_BOWS = { primary: 72, secondary: 36 }
-
-/** Fault of a picture whose subject is not in it; undefined where none is found. */
-function wrongIn(name: string, picture: PNG): string | undefined {
-  if (name !== 'rain-bow') return undefined
-  const { azimuth, heading, pitch } = VIEWS.bow
-  const { primary, secondary } = bowsIn(picture, {
-    fieldOfView: FIELD_OF_VIEW,
-    pitch,
-    sun: BOW_SUN,
-    aside: azimuth - heading
-  })
-  const isThere = primary >= LEAST_BOWS.primary && secondary >= LEAST_BOWS.secondary
-  return isThere ? undefined : `no bow: ${primary}° of it are seen, ${secondary}° of the outer one`
-}
 
 /**
  * Baselines are WebGPU's. Where WebGL's picture comes near to the tolerance it has one of its own:

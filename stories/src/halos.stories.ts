@@ -1,6 +1,7 @@
 import type { Meta, StoryObj } from '@storybook/html-vite'
-import { createHalos, VIEWS } from './halos.scene'
+import { createHalos } from './halos.scene'
 import type { HalosArgs } from './halos.scene'
+import { VIEWS } from './halosViews'
 import { mount } from './mount'
 import { choiceOf, rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
@@ -38,7 +39,7 @@ const meta: Meta<HalosArgs> = {
   },
   args: {
     view: 'halo',
-    sun: 22,
+    sun: VIEWS.halo.sun,
     dropletRadius: 9,
     regular: 0.7,
     level: 0.5,
@@ -63,17 +64,28 @@ export const Halo: Story = {
 /** The sun behind an aeroplane: coloured rings on a thin deck below, about the point where its shadow falls. */
 export const Glory: Story = {
   name: 'Glory from an aeroplane',
-  args: { view: 'glory', sun: 38, dropletRadius: 8 }
+  tags: ['screenshot'],
+  args: { view: 'glory', sun: VIEWS.glory.sun, dropletRadius: 8, exposure: -1 }
 }
 
 /** A white bow of 40° about the glory, whole through a wide lens. */
 export const Cloudbow: Story = {
   name: 'Cloudbow from an aeroplane',
-  args: { view: 'cloudbow', sun: 45, dropletRadius: 12 }
+  args: { view: 'cloudbow', sun: VIEWS.cloudbow.sun, dropletRadius: 12, exposure: -0.75 }
 }
 
 /** A light shower all about, the sun behind one's back: both bows, and the dark band between them. */
-export const Rainbow: Story = { args: { view: 'rainbow', sun: 14 } }
+export const Rainbow: Story = {
+  args: { view: 'rainbow', sun: VIEWS.rainbow.sun }
+}
 
 /** The sun behind one's back, and mist before one. */
-export const Fogbow: Story = { args: { view: 'fogbow', sun: 15 } }
+export const Fogbow: Story = {
+  tags: ['screenshot'],
+  args: { view: 'fogbow', sun: VIEWS.fogbow.sun }
+}
+
+/** The sun behind a thin even cloud of small droplets, exposed for it: an aureole that ends in brown, and coloured rings around. */
+export const Corona: Story = {
+  args: { view: 'corona', sun: VIEWS.corona.sun, dropletRadius: 6, exposure: -5 }
+}

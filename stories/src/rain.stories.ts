@@ -69,7 +69,7 @@ export const Bow: Story = {
 
 /** Snow that evaporates below altocumulus in a low sun: tails that curve away with the wind, of which the heaviest reach far down. */
 export const Virga: Story = {
-  args: { view: 'virga', sun: 6, rate: 4, virgaDepth: 3000, freezingLevel: 0 }
+  args: { view: 'virga', sun: 6, rate: 4, virgaDepth: 900, freezingLevel: 0 }
 }
 
 /** Snow that falls slowly, and so trails far behind its clouds. */

@@ -26,18 +26,20 @@ export interface View {
 /** Elevation of the sun behind the camera of the bow [°]: the top of the arc stands at what is left to 42°. */
 export const BOW_SUN = 29
 
-const home = { longitude: 0, latitude: 0 }
+/** West of a lone shower. */
+const besideShower = { longitude: 140.6426, latitude: 35.2626 }
 
 /** Weathers, and where the camera looks. */
 export const VIEWS = {
   shower: {
     label: 'Shower',
     clouds: 'shower',
-    coverage: 0.3,
-    azimuth: 260,
-    heading: 0,
+    coverage: 0.2,
+    layer: { baseAltitude: 1500 },
+    azimuth: 180,
+    heading: 90,
     pitch: 10,
-    place: home
+    place: besideShower
   },
   bow: {
     label: 'Bow in a shower',
@@ -47,18 +49,24 @@ export const VIEWS = {
     azimuth: 270,
     heading: 90,
     pitch: 10,
-    place: { longitude: 140.6426, latitude: 35.2626 }
+    place: besideShower
   },
   virga: {
     label: 'Virga',
     clouds: 'altocumulus',
     coverage: 0.12,
-    layer: { topAltitude: 4400, density: 0.006, weatherScale: 0.6, shapeScale: 0.8 },
-    azimuth: 350,
-    heading: 60,
-    pitch: 20,
+    layer: {
+      topAltitude: 4400,
+      density: 0.006,
+      weatherScale: 0.6,
+      shapeScale: 0.8,
+      wind: { east: 9, north: -2 }
+    },
+    azimuth: 290,
+    heading: 340,
+    pitch: 16,
     fall: { share: 0.9, streaks: 2 },
-    place: { longitude: 20, latitude: 45 }
+    place: { longitude: 20.6, latitude: 45.6 }
   },
   snow: {
     label: 'Snow shower',

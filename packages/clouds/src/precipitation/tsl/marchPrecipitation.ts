@@ -15,8 +15,9 @@ import {
   type Vec4
 } from '../../tsl-types'
 import { DIFFRACTED } from '../fallForm'
-import { fallenFrom, fallExtinctions } from './fall'
+import { fallenFrom } from './fall'
 import type { FallNodes } from './fallColumn'
+import { fallExtinctions } from './fallExtinctions'
 import type { FallStretch } from './fallStretch'
 
 /** Most steps of a ray over the quality's `layerSteps`. Fewer: the far end of rain is coarse (*Rain and snow*). */

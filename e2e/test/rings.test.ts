@@ -1,11 +1,11 @@
 import { PNG } from 'pngjs'
 import { expect, it } from 'vitest'
-import { bowsIn, type BowView } from '../visual/bow'
+import { degreesOf, RINGS, type RingView } from '../visual/rings'
 
-const view: BowView = { fieldOfView: 62, pitch: 10, sun: 25, aside: 180 }
+const view: RingView = { fieldOfView: 62, pitch: 10, sun: 25, aside: 180 }
 
 /** A grey picture over a dark ground, with a red and a blue ring about the point opposite the sun. */
-function picture(red: number, blue: number): PNG {
+function picture(red: number, blue: number, hasGround = true): PNG {
   const png = new PNG({ width: 320, height: 180 })
   const focal = 90 / Math.tan((31 * Math.PI) / 180)
   for (let y = 0; y < 180; y++)
@@ -16,7 +16,7 @@ function picture(red: number, blue: number): PNG {
       const ahead = Math.cos(turn) - up * Math.sin(turn)
       const away =
         (Math.atan2(Math.hypot(right, up * Math.cos(turn) + Math.sin(turn)), ahead) * 180) / Math.PI
-      const isGround = up * Math.cos(radians(10)) + Math.sin(radians(10)) < 0
+      const isGround = hasGround && up * Math.cos(radians(10)) + Math.sin(radians(10)) < 0
       const of = (middle: number): number =>
         isGround ? 0 : 20 * Math.exp(-(((away - middle) / 0.6) ** 2))
       png.data.set([120 + of(red), 120, 120 + of(blue), 255], 4 * (y * 320 + x))
@@ -26,13 +26,16 @@ function picture(red: number, blue: number): PNG {
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180
 
+const degrees = (ring: keyof typeof RINGS, drawn: PNG, seenFrom = view): number =>
+  degreesOf(RINGS[ring], drawn, seenFrom)
+
 it('finds a bow by its angle and the order of its colours, on the arc above the ground', () => {
-  const { primary, secondary } = bowsIn(picture(42.4, 40.6), view)
   // The ground cuts it at ±56° from its top.
-  expect(primary).toBeGreaterThan(90)
-  expect(primary).toBeLessThan(125)
-  expect(secondary).toBe(0)
-  expect(bowsIn(picture(50.6, 53), view).secondary).toBeGreaterThan(80)
+  const bow = picture(42.4, 40.6)
+  expect(degrees('primary', bow)).toBeGreaterThan(90)
+  expect(degrees('primary', bow)).toBeLessThan(125)
+  expect(degrees('secondary', bow)).toBe(0)
+  expect(degrees('secondary', picture(50.6, 53))).toBeGreaterThan(80)
 })
 
 it('finds none in a grey picture, with the colours the other way round, or at another angle', () => {
@@ -41,7 +44,17 @@ it('finds none in a grey picture, with the colours the other way round, or at an
     [40.6, 42.4],
     [46, 44.5]
   ])
-    expect(bowsIn(picture(red, blue), view)).toEqual({ primary: 0, secondary: 0 })
+    for (const ring of ['primary', 'secondary'] as const)
+      expect(degrees(ring, picture(red, blue))).toBe(0)
   const turned = { ...view, sun: 35 }
-  expect(bowsIn(picture(42.4, 40.6), turned).primary).toBeLessThan(40)
+  expect(degrees('primary', picture(42.4, 40.6), turned)).toBeLessThan(40)
+})
+
+it('finds a halo about the sun, and white bows by their light', () => {
+  // The sun where the point opposite it was.
+  const before = { ...view, sun: -25, aside: 0 }
+  expect(degrees('halo', picture(22, 22.8, false), before)).toBeGreaterThan(150)
+  expect(degrees('halo', picture(22, 22.8, false))).toBe(0)
+  expect(degrees('fogbow', picture(38, 38))).toBeGreaterThan(60)
+  expect(degrees('fogbow', picture(34, 42))).toBe(0)
 })
