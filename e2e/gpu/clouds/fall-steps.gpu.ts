@@ -7,7 +7,7 @@ import { QualityUniforms } from '../../../packages/clouds/src/march/quality'
 import { fallStretch } from '../../../packages/clouds/src/precipitation/tsl/fallStretch'
 import { marchPrecipitation } from '../../../packages/clouds/src/precipitation/tsl/marchPrecipitation'
 import type { LevelTexture, Vec2, Vec3 } from '../../../packages/clouds/src/tsl-types'
-import { vector3 } from '../../../packages/clouds/src/uniforms'
+import { number, vector3 } from '../../../packages/clouds/src/uniforms'
 import { evenClouds, mean } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'
@@ -63,6 +63,7 @@ gpuTest(
       map: texture(none) as unknown as LevelTexture<Vec2>,
       cascades: [],
       tileCount: 1,
+      part: number(1),
       isMoonlit: float(0) as never
     }
     const view = update()

@@ -96,6 +96,7 @@ function rainInTheEast(
     map: texture(dark) as unknown as LevelTexture<Vec2>,
     cascades: [cascade],
     tileCount: 1,
+    part: number(1),
     isMoonlit: number()
   }
   const luna = moon({ phase: 0.5 })

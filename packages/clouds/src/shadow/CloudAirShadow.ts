@@ -6,7 +6,8 @@ import type {
   AtmosphereView,
   LightSource,
   ScreenShadows,
-  ShadowedShafts
+  ShadowedShafts,
+  SharedRows
 } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import { If, float } from 'three/tsl'
@@ -68,6 +69,17 @@ class CastShadow implements AirShadow, CloudCaster {
     if (field.worldMap === null && this.isCast) this.#diffuse.update(renderer)
   }
 
+  makeRoom(): SharedRows {
+    const clouds = this.#clouds
+    const room = clouds.shadows.makeRoom(this)
+    return {
+      ...room,
+      get target() {
+        return clouds.isDisposed ? undefined : room.target
+      }
+    }
+  }
+
   get version(): number {
     return this.#shafts.version
   }
@@ -115,6 +127,7 @@ class CastShadow implements AirShadow, CloudCaster {
   dispose(): void {
     this.#diffuse.dispose()
     this.#clouds.castsInto.delete(this.#shafts)
+    this.#clouds.shadows.leave(this)
     this.#foreground.isRemoved = true
     if (this.#screen === undefined) return
     this.#clouds.screens.delete(this.#screen)

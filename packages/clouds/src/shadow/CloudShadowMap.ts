@@ -1,5 +1,5 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import type { AtmosphereView, LightSource } from '@welkin/atmosphere'
+import type { AtmosphereView, LightSource, SharedRows } from '@welkin/atmosphere'
 import { Quaternion, Vector3 } from 'three'
 import type { RenderTarget, Vector4 } from 'three'
 import { texture } from 'three/tsl'
@@ -76,6 +76,12 @@ const lightTolerance = ({ halfWidth }: CascadeState): number =>
 /** Columns beside the cascades, for a table of what shadows do to diffuse light: `DiffuseRatioTable` [texels]. */
 export const TABLE_COLUMNS = 32
 
+/**
+ * Rows below the cascades for what each light's shafts keep there: for a picture of 1920×1080 498, for one of 4 to 3 660. Fewer: coarser shafts
+ * in materials.
+ */
+const ROOM_ROWS = 664
+
 interface Cascade {
   readonly nodes: CascadeNodes
   isDrawn: boolean
@@ -117,6 +123,8 @@ export class CloudShadowMap {
   #order = 0
   /** False from so far away that neither clouds nor surfaces read maps. */
   #isNear = true
+  /** Those who keep something in rows below the cascades; null where one has left. */
+  readonly #guests: (object | null)[] = []
   /** Index of the thickest layer, with which maps drift. */
   #thickest = 0
 
@@ -146,6 +154,7 @@ export class CloudShadowMap {
       map: texture(this.target.texture) as unknown as LevelTexture<Vec2>,
       cascades: this.#cascades.map(cascade => cascade.nodes),
       tileCount: width / SIZE,
+      part: number(1),
       isMoonlit: number()
     }
     this.#ray = {
@@ -331,6 +340,34 @@ export class CloudShadowMap {
       row(nodes.v.value, measure, halfWidth - center.v, 2 * halfWidth)
       row(nodes.w.value, normal, 0, halfWidth)
     }
+  }
+
+  /**
+   * Makes room below the cascades, unless the guest has some, for 1,056 columns of what it draws in each frame. Maps that were
+   * there already are drawn anew in the next update.
+   */
+  makeRoom(guest: object): SharedRows {
+    const guests = this.#guests
+    if (!guests.includes(guest)) {
+      const free = guests.indexOf(null)
+      guests[free < 0 ? guests.length : free] = guest
+    }
+    const { target } = this
+    const height = SIZE + ROOM_ROWS * guests.length
+    if (height !== target.height) {
+      target.setSize(target.width, height)
+      this.nodes.part.value = SIZE / height
+      for (const cascade of this.#cascades) cascade.isDrawn = false
+      this.#current = null
+      this.#updateNodes()
+    }
+    return { target, first: SIZE + ROOM_ROWS * guests.indexOf(guest), count: ROOM_ROWS }
+  }
+
+  /** Leaves a guest's room to the next one. */
+  leave(guest: object): void {
+    const index = this.#guests.indexOf(guest)
+    if (index >= 0) this.#guests[index] = null
   }
 
   /** Frees the map. */

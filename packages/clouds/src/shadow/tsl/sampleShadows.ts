@@ -22,6 +22,8 @@ export interface CloudShadows {
   readonly cascades: readonly CascadeNodes[]
   /** Width of the map in tiles. */
   readonly tileCount: number
+  /** Part of the map's height that cascades have: other things may lie below. */
+  readonly part: UniformNode<'float', number>
   /** 1 for a map of moonlight, 0 of sunlight. */
   readonly isMoonlit: UniformNode<'float', number>
   /** Displacement from the camera of the map to the one of the shader, if they are two [m]. */
@@ -63,7 +65,7 @@ const NARROWER_END = MAXIMUM_DISTANCE / CASCADE_RATIO
  * low sun and below tall clouds, comes from the wider ones: without, storms are bright where cascades meet.
  */
 export function sampleShadows(
-  { map, cascades, tileCount, shift }: CloudShadows,
+  { map, cascades, tileCount, part, shift }: CloudShadows,
   offset: Vec3
 ): PlaceDepths {
   const from = (shift === undefined ? offset : offset.add(shift)).toConst()
@@ -83,7 +85,7 @@ export function sampleShadows(
       .mul(isDrawn)
       .toConst()
     const texel = map
-      .sample(vec2(x.add(atlasTile).div(tileCount), y))
+      .sample(vec2(x.add(atlasTile).div(tileCount), y.mul(part)))
       .level(0)
       .toConst() as Vec4
     const own = texel.zw.mul(shareAbove(texel, above)).add(beyond)
@@ -120,7 +122,7 @@ function depthsAt(map: CloudShadows['map'], inAtlas: Vec4): LightDepths {
  * @returns Depths by the distance from the start [m].
  */
 export function sampleShadowsAlong(
-  { map, cascades, tileCount }: CloudShadows,
+  { map, cascades, tileCount, part }: CloudShadows,
   from: Vec3,
   direction: Vec3,
   dither: Float
@@ -139,7 +141,7 @@ export function sampleShadowsAlong(
     const middle = vec3(0.5, 0.5, 0).sub(start).mul(perSlope).toConst() as Vec3
     const half = extent.mul(perSlope.abs()).toConst() as Vec3
     const [first, last] = [middle.sub(half), middle.add(half)]
-    const toAtlas = vec3(1 / tileCount, 1, 1)
+    const toAtlas = vec3(1 / tileCount, part, 1)
     return {
       start: start
         .add(vec3(atlasTile, 0, 0))
