@@ -248,7 +248,7 @@ export class LightShafts implements ShadowedShafts {
   attach(atmosphere: ViewedAtmosphere): void {
     if (atmosphere !== this.atmosphere)
       fail('LightShafts', 'atmosphere must be that of its layers', atmosphere)
-    this.#volume.room = this.#isMarched ? undefined : this.#shadows.makeRoom()
+    this.#volume.sums.room = this.#isMarched ? undefined : this.#shadows.makeRoom()
   }
 
   prepare(renderer: Renderer, { camera }: AtmosphereView, frame?: NodeFrame): void {

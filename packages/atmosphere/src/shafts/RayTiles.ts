@@ -1,4 +1,4 @@
-import type { RenderTarget } from 'three'
+import type { RenderTarget, Vector2 } from 'three'
 import { uv, vec2 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import type { FragmentPass } from '../tables/FragmentPass'
@@ -42,20 +42,23 @@ export class RayTiles {
   }
 
   /**
-   * Lays them out, for so many rays in each direction; `resize(0, 0)` frees all but a texel of their own texture.
+   * Lays them out.
    *
+   * @param grid - Rays in each direction.
    * @returns False if so many have no room.
    */
-  resize(x: number, y: number): boolean {
-    const columns = Math.min(Math.floor(MOST_WIDTH / Math.max(x, 1)), this.#mostColumns)
-    const size = this.#size.value.set(x * columns, y * Math.ceil(this.#count / columns))
-    const { target } = this
-    const isOwn = target === this.#own
-    if (!isOwn && size.y > this.room!.count) return false
-    this.#own.setSize(isOwn ? Math.max(size.x, 1) : 1, isOwn ? Math.max(size.y, 1) : 1)
-    this.#first.value = isOwn ? 0 : this.room!.first
+  resize(grid: Vector2): boolean {
+    const { room, target } = this
+    const columns = Math.min(Math.floor(MOST_WIDTH / grid.x), this.#mostColumns)
+    const size = this.#size.value.copy(grid)
+    size.x *= columns
+    size.y *= Math.ceil(this.#count / columns)
+    if (target === this.#own) target.setSize(size.x, size.y)
+    else if (size.y > room!.count) return false
+    else this.#own.dispose()
+    this.#first.value = target === this.#own ? 0 : room!.first
     this.#columns.value = columns
-    this.#grid.value.set(x, y)
+    this.#grid.value.copy(grid)
     this.#texelSize.value.set(1 / target.width, 1 / target.height)
     return true
   }

@@ -17,7 +17,6 @@ import { RADIANCE_SCALE } from '../tables/tableSizes'
 import { loop, type Float, type Mat4, type Vec2, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import type { ViewNodes } from '../view/ViewNodes'
-import type { SharedRows } from './AirOccluder'
 import type { CameraShafts } from './CameraShafts'
 import { RayTiles } from './RayTiles'
 import { lostInSlice, type Slice } from './tsl/lostInSlice'
@@ -72,7 +71,7 @@ export class ShaftVolume {
   /** Light that slices lose; where in them dark air begins and ends. */
   readonly #slices: RayTiles
   /** Light that rays lose up to the end of each slice, and edges of the dark in it, in the middle of four rays: one texture, for materials have few left. */
-  readonly #sums: RayTiles
+  readonly sums = new RayTiles(tableTarget('Welkin.LightShafts', 1, 1), SUM_TILES, SUM_COLUMNS)
   readonly #sliceLight: TextureNode
   readonly #sliceEdges: TextureNode
   readonly #projectionInverse: Mat4
@@ -91,7 +90,6 @@ export class ShaftVolume {
     this.#projectionInverse = uniform(camera.projectionMatrixInverse) as unknown as Mat4
     const slices = tableTarget('Welkin.LightShafts', 1, 1, 2)
     this.#slices = new RayTiles(slices, SLICE_TILES, SLICE_COLUMNS)
-    this.#sums = new RayTiles(tableTarget('Welkin.LightShafts', 1, 1), SUM_TILES, SUM_COLUMNS)
     const [light, edges] = slices.textures
     edges.format = RGFormat
     edges.type = UnsignedByteType
@@ -99,31 +97,26 @@ export class ShaftVolume {
     this.#sliceEdges = texture(edges)
   }
 
-  /** Has materials read it from a texture that they sample already; their shaders must be compiled after that. */
-  set room(room: SharedRows | undefined) {
-    this.#sums.room = room
-  }
-
   /**
    * Sizes its targets, before anything is drawn with them in a frame.
    *
-   * @param quality - Fineness; null while nothing reads them, to free all but a texel.
+   * @param quality - Fineness; null while nothing reads them, to free them.
    */
   resize(renderer: Renderer, quality: VolumeQuality | null): void {
     if (quality === null) {
-      for (const tiles of [this.#slices, this.#sums]) tiles.resize(0, 0)
+      this.#free()
       return
     }
     const { rays, sliceSamples } = quality
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
     let step = Math.max(Math.max(width, height) / rays, 1)
-    const fit = (tiles: RayTiles): boolean => {
+    do {
       this.#size.value.set(Math.max(width, 1), Math.max(height, 1)).divideScalar(step)
       // One ray more beyond each edge of the picture.
-      return tiles.resize(Math.ceil(this.#size.value.x) + 2, Math.ceil(this.#size.value.y) + 2)
-    }
-    while (!fit(this.#sums)) step *= COARSER
-    fit(this.#slices)
+      _size.copy(this.#size.value).ceil().addScalar(2)
+      step *= COARSER
+    } while (!this.sums.resize(_size))
+    this.#slices.resize(_size)
     this.#sliceSamples.value = sliceSamples
   }
 
@@ -149,7 +142,7 @@ export class ShaftVolume {
       this.#compiled = version
     }
     this.#slices.render(renderer, this.#passes[0])
-    this.#sums.render(renderer, this.#passes[1])
+    this.sums.render(renderer, this.#passes[1])
   }
 
   /** Distance at which a slice begins [m]. */
@@ -160,7 +153,7 @@ export class ShaftVolume {
 
   /** Reads a sum, or edges in a tile after those of the sums. */
   #sumAt(tile: Float, place: Vec2): Vec4 {
-    return this.#sums.read(texture(this.#sums.target.texture), tile, place)
+    return this.sums.read(texture(this.sums.target.texture), tile, place)
   }
 
   #march({ view, shadowedAir, steps }: ShaftsInVolume, shadowedSky: ShadowedAir): Outputs {
@@ -197,7 +190,7 @@ export class ShaftVolume {
 
   /** A texel of the sums: between four rays, which have samples in all places of their steps. */
   #sum(): Vec4 {
-    const { tile, place } = this.#sums.texel()
+    const { tile, place } = this.sums.texel()
     const between = place.add(1).toConst()
     const sum = vec4(0).toVar()
     If(tile.lessThan(SLICE_TILES - 0.5), () => {
@@ -257,9 +250,14 @@ export class ShaftVolume {
     return before.add(after.sub(before).mul(part)).div(RADIANCE_SCALE)
   }
 
+  #free(): void {
+    for (const tiles of [this.#slices, this.sums]) tiles.dispose()
+  }
+
   /** Frees its textures. It can be used again. */
   dispose(): void {
-    for (const owned of [...this.#passes, this.#slices, this.#sums]) owned.dispose()
+    for (const pass of this.#passes) pass.dispose()
+    this.#free()
     this.#passes = []
     this.#compiled = -1
   }

@@ -35,6 +35,7 @@ class CastShadow implements AirShadow, CloudCaster {
   readonly #screen: ScreenShadows | undefined
   /** Displacement from the clouds' camera, as their maps know it, to that of the shafts [m]. */
   readonly #shift = vector3()
+  #room: SharedRows | undefined
   /** 1 while the maps are of the shafts' light. */
   readonly #isMapped = number(1)
 
@@ -70,14 +71,7 @@ class CastShadow implements AirShadow, CloudCaster {
   }
 
   makeRoom(): SharedRows {
-    const clouds = this.#clouds
-    const room = clouds.shadows.makeRoom(this)
-    return {
-      ...room,
-      get target() {
-        return clouds.isDisposed ? undefined : room.target
-      }
-    }
+    return (this.#room ??= this.#clouds.shadows.makeRoom())
   }
 
   get version(): number {
@@ -127,7 +121,7 @@ class CastShadow implements AirShadow, CloudCaster {
   dispose(): void {
     this.#diffuse.dispose()
     this.#clouds.castsInto.delete(this.#shafts)
-    this.#clouds.shadows.leave(this)
+    if (this.#room) this.#clouds.shadows.leave(this.#room)
     this.#foreground.isRemoved = true
     if (this.#screen === undefined) return
     this.#clouds.screens.delete(this.#screen)

@@ -10,7 +10,7 @@ import type { CascadeNodes, CloudShadows } from './tsl/sampleShadows'
 import type { ShadingFall } from './tsl/fallDepth'
 import { CASCADE_RATIO, shadowRay, type ShadowRayUniforms } from './tsl/shadowRay'
 import type { LevelTexture, Vec2 } from '../tsl-types'
-import { number, vector3, vector4 } from '../uniforms'
+import { number, vector2, vector3, vector4 } from '../uniforms'
 
 /**
  * Half widths of the cascades for a camera near the ground [m]. Greater: blurred shadows near by; smaller:
@@ -123,8 +123,9 @@ export class CloudShadowMap {
   #order = 0
   /** False from so far away that neither clouds nor surfaces read maps. */
   #isNear = true
-  /** Those who keep something in rows below the cascades; null where one has left. */
-  readonly #guests: (object | null)[] = []
+  /** Rooms below the cascades, and those of them that nobody has. */
+  readonly #rooms: { target: SharedRows['target'] }[] = []
+  readonly #free: SharedRows[] = []
   /** Index of the thickest layer, with which maps drift. */
   #thickest = 0
 
@@ -153,10 +154,10 @@ export class CloudShadowMap {
     this.nodes = {
       map: texture(this.target.texture) as unknown as LevelTexture<Vec2>,
       cascades: this.#cascades.map(cascade => cascade.nodes),
-      tileCount: width / SIZE,
-      part: number(1),
+      scale: vector2(),
       isMoonlit: number()
     }
+    this.nodes.scale.value.set(SIZE / width, 1)
     this.#ray = {
       toLight: vector3(),
       origin: vector3(),
@@ -190,8 +191,7 @@ export class CloudShadowMap {
     this.#light.copy(isMoonlit ? night.moonDirection.value : view.lightDirection)
     this.#isNear = view.height <= HIGHEST
     if (view.height > (castsIntoAir ? HIGHEST_IN_AIR : HIGHEST)) {
-      for (const cascade of this.#cascades) cascade.isDrawn = false
-      this.#current = null
+      this.#forget()
     } else {
       this.#draw(renderer, view, radius)
     }
@@ -343,35 +343,36 @@ export class CloudShadowMap {
   }
 
   /**
-   * Makes room below the cascades, unless the guest has some, for 1,056 columns of what it draws in each frame. Maps that were
-   * there already are drawn anew in the next update.
+   * Makes room below the cascades, for 1,056 columns of what is drawn there in each frame. Where the map grows by that, cascades are drawn anew
+   * in the next update.
    */
-  makeRoom(guest: object): SharedRows {
-    const guests = this.#guests
-    if (!guests.includes(guest)) {
-      const free = guests.indexOf(null)
-      guests[free < 0 ? guests.length : free] = guest
-    }
+  makeRoom(): SharedRows {
+    const free = this.#free.pop()
+    if (free) return free
     const { target } = this
-    const height = SIZE + ROOM_ROWS * guests.length
-    if (height !== target.height) {
-      target.setSize(target.width, height)
-      this.nodes.part.value = SIZE / height
-      for (const cascade of this.#cascades) cascade.isDrawn = false
-      this.#current = null
-      this.#updateNodes()
-    }
-    return { target, first: SIZE + ROOM_ROWS * guests.indexOf(guest), count: ROOM_ROWS }
+    const room = { target, first: target.height, count: ROOM_ROWS }
+    this.#rooms.push(room)
+    target.setSize(target.width, room.first + ROOM_ROWS)
+    this.nodes.scale.value.y = SIZE / target.height
+    this.#forget()
+    this.#updateNodes()
+    return room
   }
 
-  /** Leaves a guest's room to the next one. */
-  leave(guest: object): void {
-    const index = this.#guests.indexOf(guest)
-    if (index >= 0) this.#guests[index] = null
+  /** Leaves a room to the next that asks for one. */
+  leave(room: SharedRows): void {
+    this.#free.push(room)
+  }
+
+  /** Has all cascades drawn anew. */
+  #forget(): void {
+    for (const cascade of this.#cascades) cascade.isDrawn = false
+    this.#current = null
   }
 
   /** Frees the map. */
   dispose(): void {
+    for (const room of this.#rooms) room.target = undefined
     this.target.dispose()
     this.#pass.dispose()
   }

@@ -58,7 +58,7 @@ export class DiffuseRatioTable {
       .div(field.view.air.uniforms.thickness)
       .sqrt()
       .min(1 - 0.5 / ROWS)
-      .mul(nodes.part)
+      .mul(nodes.scale.y)
     return nodes.map.sample(vec2(column, row)).level(0)
   }
 

@@ -116,22 +116,20 @@ test('has room below the cascades for as many as keep something there, who stay 
   const { target, nodes } = shadows
   sky.frames(1)
   const drawn = (): number[] => nodes.cascades.map(({ isDrawn }) => isDrawn.value)
-  const guests = [{}, {}, {}]
-  const [first, second] = guests.map(guest => shadows.makeRoom(guest))
+  const [first, second, third] = [0, 1, 2].map(() => shadows.makeRoom())
   expect([first.first, second.first]).toEqual([256, 256 + first.count])
   expect(first.target).toBe(target)
   expect(target.height).toBe(256 + 3 * first.count)
-  expect(nodes.part.value * target.height).toBeCloseTo(256, 9)
+  expect(nodes.scale.value.y * target.height).toBeCloseTo(256, 9)
   // What was there went with the smaller texture.
   expect(drawn()).toEqual([0, 0, 0])
   expect(sky.frames(1, 0)).toBe(3)
   expect(drawn()).toEqual([1, 1, 1])
-  expect(shadows.makeRoom(guests[1]).first).toBe(second.first)
-  shadows.leave(guests[0])
-  shadows.leave({})
-  expect(shadows.makeRoom({}).first).toBe(first.first)
-  expect(shadows.makeRoom(guests[2]).first).toBe(256 + 2 * first.count)
+  shadows.leave(second)
+  expect(shadows.makeRoom()).toBe(second)
   expect(sky.frames(50, 0)).toBe(0)
+  shadows.dispose()
+  expect([first, second, third].map(room => room.target)).toEqual([undefined, undefined, undefined])
 })
 
 test('serves all cascades in turn while everything changes', () => {
