@@ -192,7 +192,9 @@ it('light of surfaces and shafts sample as many textures as the README says', as
     })
   const shaded = await withShafts(false)
   expect(`${shaded - air}`).toBe(stated('atmosphere', '`lightShafts`')[0])
-  expect(`${(await withShafts(true)) - shaded}`).toBe(stated('atmosphere', '`heightFieldShadow`')[0])
+  expect(`${(await withShafts(true)) - shaded}`).toBe(
+    stated('atmosphere', '`heightFieldShadow`')[0]
+  )
   const forward = (casters: number, isLit: boolean): Promise<number> =>
     count(isLit ? LIT : 'Background.material', renderer => {
       const { atmosphere, camera, scene, sun } = new World()
@@ -201,8 +203,7 @@ it('light of surfaces and shafts sample as many textures as the README says', as
       sun.castShadow = true
       if (casters > 0) atmosphere.add(lightShafts(atmosphere, camera, sun))
       const { layers } = atmosphere
-      if (casters > 1)
-        (layers[0] as LightShafts).add(heightFieldShadow(picture(), new Matrix4()))
+      if (casters > 1) (layers[0] as LightShafts).add(heightFieldShadow(picture(), new Matrix4()))
       return () => renderer.render(scene, camera)
     })
   for (const isLit of [false, true]) {

@@ -290,7 +290,9 @@ gpuTest(
       shafts.remove(caster)
     }
     const [own, beside] = read
-    t.note(`beside the clouds' shadows ${apart(beside, own) / apart(own, lit)} of the lost light apart`)
+    t.note(
+      `beside the clouds' shadows ${apart(beside, own) / apart(own, lit)} of the lost light apart`
+    )
     expectTrue(apart(own, lit) > 0.5 * shadows, 'clouds cast shadows at medium quality')
     expectTrue(apart(beside, own) < 1e-3 * shadows, "beside the clouds' shadows")
     for (const owned of [plain, set]) owned.dispose()

@@ -1,16 +1,6 @@
 import { RGFormat, UnsignedByteType, Vector2 } from 'three'
 import type { Camera } from 'three'
-import {
-  Fn,
-  If,
-  float,
-  getViewPosition,
-  int,
-  screenUV,
-  texture,
-  uniform,
-  vec4
-} from 'three/tsl'
+import { Fn, If, float, getViewPosition, int, screenUV, texture, uniform, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget, type Outputs } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
@@ -30,10 +20,6 @@ const SLICES = 24
 /** Tiles: of slices one more, for the sky; of sums twelve more, each with the edges of two slices. */
 const SLICE_TILES = SLICES + 1
 const SUM_TILES = SLICE_TILES + SLICES / 2
-
-/** Tiles in a row, at most: slices fill a square of five by five, and each more would be marched for nothing. */
-const SLICE_COLUMNS = 5
-const SUM_COLUMNS = 13
 
 /** Factor on the distance of rays where they are too many for the room that there is. */
 const COARSER = 1.05
@@ -68,10 +54,10 @@ export interface VolumeQuality {
  * surface is not taken from the air before it. Rays into the sky are marched whole, since some fogs are not in front of it.
  */
 export class ShaftVolume {
-  /** Light that slices lose; where in them dark air begins and ends. */
-  readonly #slices: RayTiles
+  /** Light that slices lose; where in them dark air begins and ends: five by five tiles, since each more would be marched for nothing. */
+  readonly #slices = new RayTiles(tableTarget('Welkin.LightShafts', 1, 1, 2), SLICE_TILES, 5)
   /** Light that rays lose up to the end of each slice, and edges of the dark in it, in the middle of four rays: one texture, for materials have few left. */
-  readonly sums = new RayTiles(tableTarget('Welkin.LightShafts', 1, 1), SUM_TILES, SUM_COLUMNS)
+  readonly sums = new RayTiles(tableTarget('Welkin.LightShafts', 1, 1), SUM_TILES, 13)
   readonly #sliceLight: TextureNode
   readonly #sliceEdges: TextureNode
   readonly #projectionInverse: Mat4
@@ -88,9 +74,7 @@ export class ShaftVolume {
 
   constructor(camera: Camera) {
     this.#projectionInverse = uniform(camera.projectionMatrixInverse) as unknown as Mat4
-    const slices = tableTarget('Welkin.LightShafts', 1, 1, 2)
-    this.#slices = new RayTiles(slices, SLICE_TILES, SLICE_COLUMNS)
-    const [light, edges] = slices.textures
+    const [light, edges] = this.#slices.own.textures
     edges.format = RGFormat
     edges.type = UnsignedByteType
     this.#sliceLight = texture(light)
@@ -104,7 +88,7 @@ export class ShaftVolume {
    */
   resize(renderer: Renderer, quality: VolumeQuality | null): void {
     if (quality === null) {
-      this.#free()
+      for (const tiles of [this.#slices, this.sums]) tiles.dispose()
       return
     }
     const { rays, sliceSamples } = quality
@@ -250,14 +234,9 @@ export class ShaftVolume {
     return before.add(after.sub(before).mul(part)).div(RADIANCE_SCALE)
   }
 
-  #free(): void {
-    for (const tiles of [this.#slices, this.sums]) tiles.dispose()
-  }
-
   /** Frees its textures. It can be used again. */
   dispose(): void {
-    for (const pass of this.#passes) pass.dispose()
-    this.#free()
+    for (const owned of [...this.#passes, this.#slices, this.sums]) owned.dispose()
     this.#passes = []
     this.#compiled = -1
   }

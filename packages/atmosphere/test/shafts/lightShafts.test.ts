@@ -270,7 +270,9 @@ describe('what is added to light shafts', () => {
 
   it('asks what casts for room once materials read the shafts, and not where they march', () => {
     const home = new Atmosphere()
-    const shafts = lightShafts(home, camera, new SunDirectionalLight(home), { quality: 'reference' })
+    const shafts = lightShafts(home, camera, new SunDirectionalLight(home), {
+      quality: 'reference'
+    })
     const makeRoom = vi.fn(() => ({ target: undefined, first: 0, count: 0 }))
     shafts.add({ castInto: () => ({ transmittance: () => () => float(1), makeRoom }) })
     home.add(shafts)

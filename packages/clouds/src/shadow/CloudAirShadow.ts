@@ -121,7 +121,7 @@ class CastShadow implements AirShadow, CloudCaster {
   dispose(): void {
     this.#diffuse.dispose()
     this.#clouds.castsInto.delete(this.#shafts)
-    if (this.#room) this.#clouds.shadows.leave(this.#room)
+    if (this.#room) this.#clouds.shadows.left.push(this.#room)
     this.#foreground.isRemoved = true
     if (this.#screen === undefined) return
     this.#clouds.screens.delete(this.#screen)

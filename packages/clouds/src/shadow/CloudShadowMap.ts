@@ -123,9 +123,10 @@ export class CloudShadowMap {
   #order = 0
   /** False from so far away that neither clouds nor surfaces read maps. */
   #isNear = true
-  /** Rooms below the cascades, and those of them that nobody has. */
+  /** Rooms below the cascades. */
   readonly #rooms: { target: SharedRows['target'] }[] = []
-  readonly #free: SharedRows[] = []
+  /** Those of them that were left: the next that asks for one has it. */
+  readonly left: SharedRows[] = []
   /** Index of the thickest layer, with which maps drift. */
   #thickest = 0
 
@@ -347,8 +348,8 @@ export class CloudShadowMap {
    * in the next update.
    */
   makeRoom(): SharedRows {
-    const free = this.#free.pop()
-    if (free) return free
+    const left = this.left.pop()
+    if (left) return left
     const { target } = this
     const room = { target, first: target.height, count: ROOM_ROWS }
     this.#rooms.push(room)
@@ -357,11 +358,6 @@ export class CloudShadowMap {
     this.#forget()
     this.#updateNodes()
     return room
-  }
-
-  /** Leaves a room to the next that asks for one. */
-  leave(room: SharedRows): void {
-    this.#free.push(room)
   }
 
   /** Has all cascades drawn anew. */

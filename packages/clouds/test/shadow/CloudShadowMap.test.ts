@@ -125,7 +125,7 @@ test('has room below the cascades for as many as keep something there, who stay 
   expect(drawn()).toEqual([0, 0, 0])
   expect(sky.frames(1, 0)).toBe(3)
   expect(drawn()).toEqual([1, 1, 1])
-  shadows.leave(second)
+  shadows.left.push(second)
   expect(shadows.makeRoom()).toBe(second)
   expect(sky.frames(50, 0)).toBe(0)
   shadows.dispose()
