@@ -235,8 +235,16 @@ it('features of the clouds sample as many textures as their README says', async 
       sun.castShadow = true
       const node = world.clouds()
       Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
-      const shafts = lightShafts(atmosphere, camera, sun).add(cloudAirShadow(node))
-      if (hasShafts) atmosphere.add(shafts)
+      const occluder = cloudAirShadow(node)
+      const shafts = lightShafts(atmosphere, camera, sun).add(occluder)
+      const { target } = node.shadows
+      expect(target.height).toBe(256)
+      if (!hasShafts) return
+      atmosphere.add(shafts)
+      const { height } = target
+      expect(height).toBeGreaterThan(256)
+      shafts.remove(occluder).add(occluder)
+      expect(target.height, 'room that was left').toBe(height)
     })
   expect((await forward(true)) - (await forward(false))).toBe(0)
   expect(stated('clouds', '`lightShafts` that clouds')[1]).toMatch(/^0 with `cloudShadow`/)

@@ -38,7 +38,10 @@ export class CastShadows {
 
   /** Room in the texture of the first that has any. */
   makeRoom(): SharedRows | undefined {
-    return this.all.find(shadow => shadow.makeRoom)?.makeRoom!()
+    return this.all.reduce<SharedRows | undefined>(
+      (room, shadow) => room ?? shadow.makeRoom?.(),
+      undefined
+    )
   }
 
   /** Frees what they have drawn. */

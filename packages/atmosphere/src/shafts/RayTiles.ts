@@ -71,7 +71,7 @@ export class RayTiles {
     const cell = uv().mul(this.#tiles).toConst() as unknown as Vec2
     const at = cell.floor().toConst() as Vec2
     const place = cell.sub(at).mul(this.#grid).floor().toConst() as Vec2
-    return { tile: at.y.mul(this.#tiles.x).add(at.x).toConst() as Float, place }
+    return { tile: at.y.mul(this.#tiles.x).add(at.x).toConst(), place }
   }
 
   /**

@@ -71,7 +71,8 @@ class CastShadow implements AirShadow, CloudCaster {
   }
 
   makeRoom(): SharedRows {
-    return (this.#room ??= this.#clouds.shadows.makeRoom())
+    const { shadows } = this.#clouds
+    return (this.#room ??= shadows.left.pop() ?? shadows.makeRoom())
   }
 
   get version(): number {

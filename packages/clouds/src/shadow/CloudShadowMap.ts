@@ -125,7 +125,7 @@ export class CloudShadowMap {
   #isNear = true
   /** Rooms below the cascades. */
   readonly #rooms: { target: SharedRows['target'] }[] = []
-  /** Those of them that were left: the next that asks for one has it. */
+  /** Those of them that were left, to be had by the next instead of one more. */
   readonly left: SharedRows[] = []
   /** Index of the thickest layer, with which maps drift. */
   #thickest = 0
@@ -348,8 +348,6 @@ export class CloudShadowMap {
    * in the next update.
    */
   makeRoom(): SharedRows {
-    const left = this.left.pop()
-    if (left) return left
     const { target } = this
     const room = { target, first: target.height, count: ROOM_ROWS }
     this.#rooms.push(room)
