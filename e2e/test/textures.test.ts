@@ -17,12 +17,13 @@ import {
   moon,
   planetGround,
   raindrops,
+  skyBackground,
   skyEnvironment,
   stars,
   sunFlare,
   surfaceLighting
 } from '@welkin/atmosphere'
-import type { SkyLayer } from '@welkin/atmosphere'
+import type { LightShafts, SkyLayer } from '@welkin/atmosphere'
 import {
   cloudAirShadow,
   cloudPreset,
@@ -203,8 +204,26 @@ it('light of surfaces and shafts sample as many textures as the README says', as
     })
   const shaded = await withShafts(false)
   expect(`${shaded - air}`).toBe(stated('atmosphere', '`lightShafts`')[0])
-  const hills = stated('atmosphere', '`heightFieldShadow`')[0]
-  expect(hills).toContain(`${(await withShafts(true)) - shaded} as post effect`)
+  expect(`${(await withShafts(true)) - shaded}`).toBe(
+    stated('atmosphere', '`heightFieldShadow`')[0]
+  )
+  const forward = (casters: number, isLit: boolean): Promise<number> =>
+    count(isLit ? LIT : 'Background.material', renderer => {
+      const { atmosphere, camera, scene, sun } = new World()
+      scene.fogNode = aerialPerspectiveFog(atmosphere)
+      scene.backgroundNode = skyBackground(atmosphere)
+      sun.castShadow = true
+      if (casters > 0) atmosphere.add(lightShafts(atmosphere, camera, sun))
+      const { layers } = atmosphere
+      if (casters > 1) (layers[0] as LightShafts).add(heightFieldShadow(picture(), new Matrix4()))
+      return () => renderer.render(scene, camera)
+    })
+  for (const isLit of [false, true]) {
+    const [none, shafts, all] = await Promise.all([0, 1, 2].map(casters => forward(casters, isLit)))
+    const column = isLit ? 1 : 0
+    expect(`${shafts - none}`).toBe(stated('atmosphere', '`lightShafts`')[column])
+    expect(`${all - shafts}`).toBe(stated('atmosphere', '`heightFieldShadow`')[column])
+  }
 })
 
 it('features of the clouds sample as many textures as their README says', async () => {
@@ -220,6 +239,27 @@ it('features of the clouds sample as many textures as their README says', async 
     return node
   })
   expect(`${shafted - withClouds}`).toBe(stated('clouds', '`lightShafts` that clouds')[0])
+  // Clouds keep what materials read of the shafts beside their shadows.
+  const forward = (hasShafts: boolean): Promise<number> =>
+    inLit(world => {
+      const { atmosphere, camera, scene, sun } = world
+      scene.fogNode = aerialPerspectiveFog(atmosphere)
+      sun.castShadow = true
+      const node = world.clouds()
+      Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
+      const occluder = cloudAirShadow(node)
+      const shafts = lightShafts(atmosphere, camera, sun).add(occluder)
+      const { target } = node.shadows
+      expect(target.height).toBe(256)
+      if (!hasShafts) return
+      atmosphere.add(shafts)
+      const { height } = target
+      expect(height).toBeGreaterThan(256)
+      shafts.remove(occluder).add(occluder)
+      expect(target.height, 'room that was left').toBe(height)
+    })
+  expect((await forward(true)) - (await forward(false))).toBe(0)
+  expect(stated('clouds', '`lightShafts` that clouds')[1]).toMatch(/^0 with `cloudShadow`/)
   for (const worldMap of [null, picture()]) {
     const shaded = await inLit(world => {
       const { sun } = world

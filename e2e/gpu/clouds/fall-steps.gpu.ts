@@ -7,7 +7,7 @@ import { QualityUniforms } from '../../../packages/clouds/src/march/quality'
 import { fallStretch } from '../../../packages/clouds/src/precipitation/tsl/fallStretch'
 import { marchPrecipitation } from '../../../packages/clouds/src/precipitation/tsl/marchPrecipitation'
 import type { LevelTexture, Vec2, Vec3 } from '../../../packages/clouds/src/tsl-types'
-import { vector3 } from '../../../packages/clouds/src/uniforms'
+import { vector2, vector3 } from '../../../packages/clouds/src/uniforms'
 import { evenClouds, mean } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'
@@ -62,7 +62,7 @@ gpuTest(
     const shadows = {
       map: texture(none) as unknown as LevelTexture<Vec2>,
       cascades: [],
-      tileCount: 1,
+      scale: vector2(),
       isMoonlit: float(0) as never
     }
     const view = update()

@@ -16,7 +16,7 @@ import {
 } from '../../../packages/clouds/src/precipitation/tsl/lightPrecipitation'
 import type { CloudShadows } from '../../../packages/clouds/src/shadow/tsl/sampleShadows'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../../../packages/clouds/src/tsl-types'
-import { number, vector3, vector4 } from '../../../packages/clouds/src/uniforms'
+import { number, vector2, vector3, vector4 } from '../../../packages/clouds/src/uniforms'
 import { evenClouds, mean, type CloudScene } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'
@@ -95,9 +95,10 @@ function rainInTheEast(
   const shadows: CloudShadows = {
     map: texture(dark) as unknown as LevelTexture<Vec2>,
     cascades: [cascade],
-    tileCount: 1,
+    scale: vector2(),
     isMoonlit: number()
   }
+  shadows.scale.value.set(1, 1)
   const luna = moon({ phase: 0.5 })
   const above: CloudsAbove = {
     depth: float(10),

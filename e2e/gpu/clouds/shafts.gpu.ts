@@ -274,6 +274,27 @@ gpuTest(
     )
     expectTrue(shadows > 0.01 * all, 'clouds cast shadows')
     expectTrue(errors < 0.15 * shadows, 'forward')
+    // Beside the clouds' shadows materials read what they read in a texture of its own.
+    shafts.remove(occluder).quality = 'medium'
+    const read: Picture[] = []
+    for (const hasRoom of [false, true]) {
+      const caster = castsOnce(node, hasRoom)
+      shafts.add(caster)
+      await draw()
+      const { height } = node.shadows.target
+      expectTrue(height > 256 === hasRoom, `the clouds' shadows have ${height} rows`)
+      for (let i = 0; i < 2; i++) {
+        await nextFrame()
+        read[Number(hasRoom)] = await drawForward(renderer, scene, camera, atmosphere)
+      }
+      shafts.remove(caster)
+    }
+    const [own, beside] = read
+    t.note(
+      `beside the clouds' shadows ${apart(beside, own) / apart(own, lit)} of the lost light apart`
+    )
+    expectTrue(apart(own, lit) > 0.5 * shadows, 'clouds cast shadows at medium quality')
+    expectTrue(apart(beside, own) < 1e-3 * shadows, "beside the clouds' shadows")
     for (const owned of [plain, set]) owned.dispose()
     dispose()
   },

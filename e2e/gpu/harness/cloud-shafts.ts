@@ -101,8 +101,12 @@ export async function unseenClouds(
   }
 }
 
-/** Clouds that take light scattered once alone, for which there are closed forms. */
-export const castsOnce = (node: CloudsNode): AirOccluder => ({
+/**
+ * Clouds that take light scattered once alone, for which there are closed forms.
+ *
+ * @param hasRoom - True if they have room beside their shadows for what materials read.
+ */
+export const castsOnce = (node: CloudsNode, hasRoom = false): AirOccluder => ({
   castInto(shafts) {
     const shadow = cloudAirShadow(node).castInto(shafts)
     return {
@@ -111,6 +115,7 @@ export const castsOnce = (node: CloudsNode): AirOccluder => ({
       },
       update: (view, renderer) => shadow.update?.(view, renderer),
       transmittance: ray => shadow.transmittance(ray),
+      ...(hasRoom && { makeRoom: () => shadow.makeRoom!() }),
       dispose: () => shadow.dispose?.()
     }
   }

@@ -34,7 +34,8 @@ export type {
   AirPoint,
   AirViewRay,
   AirShadow,
-  ShadowedShafts
+  ShadowedShafts,
+  SharedRows
 } from './shafts/AirOccluder'
 export type { AirOptions, AirShadows, ScreenShadows, ForegroundLayer } from './view/AirShadows'
 export { LightSource } from './view/LightSource'

@@ -1,4 +1,4 @@
-import type { Camera } from 'three'
+import type { Camera, RenderTarget } from 'three'
 import type { Renderer } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
@@ -53,6 +53,15 @@ export interface ShadowedShafts extends AirShadows {
   litAt(ray: Omit<AirViewRay, 'view'>, distance: Float): Float
 }
 
+/** Rows of a half-float texture that has something else besides: a shader that reads both samples one texture. */
+export interface SharedRows {
+  /** Undefined once it has been disposed of. */
+  readonly target: RenderTarget | undefined
+  /** First row, and how many there are [texels]. */
+  readonly first: number
+  readonly count: number
+}
+
 /** Shadow that something casts into the air, in one light. */
 export interface AirShadow {
   /** False while there is nothing that takes light; left out, there always may be. */
@@ -69,6 +78,8 @@ export interface AirShadow {
    * less under clouds that are thick, more under thin ones and above them. Left out, 1.
    */
   diffuse?(point: AirPoint): Vec4
+  /** Makes room in its own texture for what materials read that draw the shafts. Left out, they sample one texture more. */
+  makeRoom?(): SharedRows
   /** Frees what it has drawn, which is drawn again at the next `update`: called when the shafts are disposed of. */
   free?(): void
   /** Called when it is taken out. */

@@ -63,7 +63,7 @@ const _axes = new Matrix4()
  * Clouds, hills and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`, or a `heightFieldShadow`. They need no
  * shadow map of the light.
  *
- * Needs a texture of 1 MB, and 4 bytes a pixel of the picture (1 at `'low'` and `'medium'` quality), or 7 MB for materials.
+ * Needs a texture of 1 MB, and 4 bytes a pixel of the picture (1 at `'low'` and `'medium'` quality), or 7 MB for materials, with clouds 9.
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
  *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",
@@ -248,6 +248,7 @@ export class LightShafts implements ShadowedShafts {
   attach(atmosphere: ViewedAtmosphere): void {
     if (atmosphere !== this.atmosphere)
       fail('LightShafts', 'atmosphere must be that of its layers', atmosphere)
+    this.#volume.sums.room = this.#isMarched ? undefined : this.#shadows.makeRoom()
   }
 
   prepare(renderer: Renderer, { camera }: AtmosphereView, frame?: NodeFrame): void {

@@ -1,26 +1,14 @@
 import { RGFormat, UnsignedByteType, Vector2 } from 'three'
-import type { Camera, RenderTarget } from 'three'
-import {
-  Fn,
-  If,
-  float,
-  getViewPosition,
-  int,
-  screenUV,
-  texture,
-  uniform,
-  uv,
-  vec2,
-  vec4
-} from 'three/tsl'
+import type { Camera } from 'three'
+import { Fn, If, float, getViewPosition, int, screenUV, texture, uniform, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget, type Outputs } from '../tables/FragmentPass'
-import { rowAndColumn } from '../tables/tsl/texels'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { loop, sampleLevel0, type Float, type Mat4, type Vec2, type Vec4 } from '../tsl-types'
+import { loop, type Float, type Mat4, type Vec2, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import type { ViewNodes } from '../view/ViewNodes'
 import type { CameraShafts } from './CameraShafts'
+import { RayTiles } from './RayTiles'
 import { lostInSlice, type Slice } from './tsl/lostInSlice'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { ShadowedAir, ShaftRay } from './tsl/shadowsAlong'
@@ -29,11 +17,12 @@ import { FAR } from './tsl/without'
 /** Slices of a ray, each in a tile. Fewer: light before surfaces in shadow is blurred with that behind. */
 const SLICES = 24
 
-/** Tiles in a row. Slices have one tile more, for the sky; sums have the edges of two slices in each of twelve more. */
-const TILE_COLUMNS = 5
+/** Tiles: of slices one more, for the sky; of sums twelve more, each with the edges of two slices. */
 const SLICE_TILES = SLICES + 1
 const SUM_TILES = SLICE_TILES + SLICES / 2
-const rowsOf = (tiles: number): number => Math.ceil(tiles / TILE_COLUMNS)
+
+/** Factor on the distance of rays where they are too many for the room that there is. */
+const COARSER = 1.05
 
 /** Distance of the last slice over the first one's length. */
 const REACH = 1000
@@ -65,16 +54,13 @@ export interface VolumeQuality {
  * surface is not taken from the air before it. Rays into the sky are marched whole, since some fogs are not in front of it.
  */
 export class ShaftVolume {
-  /** Light that slices lose; where in them dark air begins and ends. */
-  readonly #slices: RenderTarget
+  /** Light that slices lose; where in them dark air begins and ends: five by five tiles, since each more would be marched for nothing. */
+  readonly #slices = new RayTiles(tableTarget('Welkin.LightShafts', 1, 1, 2), SLICE_TILES, 5)
   /** Light that rays lose up to the end of each slice, and edges of the dark in it, in the middle of four rays: one texture, for materials have few left. */
-  readonly #sums: RenderTarget
+  readonly sums = new RayTiles(tableTarget('Welkin.LightShafts', 1, 1), SUM_TILES, 13)
   readonly #sliceLight: TextureNode
   readonly #sliceEdges: TextureNode
-  readonly #sumTexels: TextureNode
   readonly #projectionInverse: Mat4
-  /** Number of rays in each direction, with one beyond each edge of the picture. */
-  readonly #grid = vector2()
   /** Size of the picture, in steps from ray to ray. */
   readonly #size = vector2()
   readonly #sliceSamples = number(1)
@@ -88,34 +74,33 @@ export class ShaftVolume {
 
   constructor(camera: Camera) {
     this.#projectionInverse = uniform(camera.projectionMatrixInverse) as unknown as Mat4
-    this.#slices = tableTarget('Welkin.LightShafts', 1, 1, 2)
-    this.#sums = tableTarget('Welkin.LightShafts', 1, 1)
-    const [light, edges] = this.#slices.textures
+    const [light, edges] = this.#slices.own.textures
     edges.format = RGFormat
     edges.type = UnsignedByteType
     this.#sliceLight = texture(light)
     this.#sliceEdges = texture(edges)
-    this.#sumTexels = texture(this.#sums.texture)
   }
 
   /**
    * Sizes its targets, before anything is drawn with them in a frame.
    *
-   * @param quality - Fineness; null while nothing reads them, to free all but a texel.
+   * @param quality - Fineness; null while nothing reads them, to free them.
    */
   resize(renderer: Renderer, quality: VolumeQuality | null): void {
     if (quality === null) {
-      for (const target of [this.#slices, this.#sums]) target.setSize(1, 1)
+      for (const tiles of [this.#slices, this.sums]) tiles.dispose()
       return
     }
     const { rays, sliceSamples } = quality
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
-    const step = Math.max(Math.max(width, height) / rays, 1)
-    this.#size.value.set(Math.max(width, 1), Math.max(height, 1)).divideScalar(step)
-    this.#grid.value.copy(this.#size.value).ceil().addScalar(2)
-    const { x, y } = this.#grid.value
-    this.#slices.setSize(TILE_COLUMNS * x, rowsOf(SLICE_TILES) * y)
-    this.#sums.setSize(TILE_COLUMNS * x, rowsOf(SUM_TILES) * y)
+    let step = Math.max(Math.max(width, height) / rays, 1)
+    do {
+      this.#size.value.set(Math.max(width, 1), Math.max(height, 1)).divideScalar(step)
+      // One ray more beyond each edge of the picture.
+      _size.copy(this.#size.value).ceil().addScalar(2)
+      step *= COARSER
+    } while (!this.sums.resize(_size))
+    this.#slices.resize(_size)
     this.#sliceSamples.value = sliceSamples
   }
 
@@ -140,8 +125,8 @@ export class ShaftVolume {
       )
       this.#compiled = version
     }
-    this.#passes[0].render(renderer, this.#slices)
-    this.#passes[1].render(renderer, this.#sums)
+    this.#slices.render(renderer, this.#passes[0])
+    this.sums.render(renderer, this.#passes[1])
   }
 
   /** Distance at which a slice begins [m]. */
@@ -150,31 +135,14 @@ export class ShaftVolume {
     return grown.mul(this.#first).add(this.#start).toConst()
   }
 
-  /** Number of a texel's tile, of so many, and place in it. */
-  #texel(tiles: number): { tile: Float; place: Vec2 } {
-    const size = this.#grid.mul(vec2(TILE_COLUMNS, rowsOf(tiles)))
-    const texel = uv().mul(size).floor().toConst() as unknown as Vec2
-    const first = texel.div(this.#grid).add(1e-4).floor().toConst() as Vec2
-    const tile = first.y.mul(TILE_COLUMNS).add(first.x).toConst() as Float
-    return { tile, place: texel.sub(first.mul(this.#grid)).toConst() }
-  }
-
-  /** Reads a texture of so many tiles in one of them. */
-  #read(source: TextureNode, tiles: number, tile: Float, place: Vec2): Vec4 {
-    const { row, column } = rowAndColumn(tile, TILE_COLUMNS)
-    const at = vec2(column, row).mul(this.#grid).add(place)
-    const size = this.#grid.mul(vec2(TILE_COLUMNS, rowsOf(tiles)))
-    return sampleLevel0(source, at.div(size)).toConst()
-  }
-
   /** Reads a sum, or edges in a tile after those of the sums. */
   #sumAt(tile: Float, place: Vec2): Vec4 {
-    return this.#read(this.#sumTexels, SUM_TILES, tile, place)
+    return this.sums.read(texture(this.sums.target.texture), tile, place)
   }
 
   #march({ view, shadowedAir, steps }: ShaftsInVolume, shadowedSky: ShadowedAir): Outputs {
     return outputs<[Vec4, Vec4]>(2, ([lightOut, edgesOut]) => {
-      const { tile: slice, place } = this.#texel(SLICE_TILES)
+      const { tile: slice, place } = this.#slices.texel()
       const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))
       const isLast = slice.greaterThan(SLICES - 1.5)
       const part: Slice = { from, to: isLast.select(FAR, next).toConst() }
@@ -206,7 +174,7 @@ export class ShaftVolume {
 
   /** A texel of the sums: between four rays, which have samples in all places of their steps. */
   #sum(): Vec4 {
-    const { tile, place } = this.#texel(SUM_TILES)
+    const { tile, place } = this.sums.texel()
     const between = place.add(1).toConst()
     const sum = vec4(0).toVar()
     If(tile.lessThan(SLICE_TILES - 0.5), () => {
@@ -215,14 +183,14 @@ export class ShaftVolume {
         .select(tile, 0)
         .toConst()
       loop('slice', int(tile.sub(first)).add(1), index => {
-        const light = this.#read(this.#sliceLight, SLICE_TILES, first.add(float(index)), between)
+        const light = this.#slices.read(this.#sliceLight, first.add(float(index)), between)
         sum.addAssign(light)
       })
       sum.assign(sum.clamp(-MAX_LIGHT, MAX_LIGHT))
     }).Else(() => {
       const even = tile.sub(SLICE_TILES).mul(2).toConst()
       const edges = [even, even.add(1)].map(slice =>
-        this.#read(this.#sliceEdges, SLICE_TILES, slice.min(SLICES), between)
+        this.#slices.read(this.#sliceEdges, slice.min(SLICES), between)
       )
       sum.assign(vec4(edges[0].xy, edges[1].xy))
     })
@@ -268,7 +236,7 @@ export class ShaftVolume {
 
   /** Frees its textures. It can be used again. */
   dispose(): void {
-    for (const owned of [...this.#passes, this.#slices, this.#sums]) owned.dispose()
+    for (const owned of [...this.#passes, this.#slices, this.sums]) owned.dispose()
     this.#passes = []
     this.#compiled = -1
   }

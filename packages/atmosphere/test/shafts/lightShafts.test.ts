@@ -268,6 +268,26 @@ describe('what is added to light shafts', () => {
     expect(held).toBe(1)
   })
 
+  it('asks what casts for room once materials read the shafts, and not where they march', () => {
+    const home = new Atmosphere()
+    const shafts = lightShafts(home, camera, new SunDirectionalLight(home), {
+      quality: 'reference'
+    })
+    let asked = 0
+    const makeRoom = () => {
+      asked++
+      return { target: undefined, first: 0, count: 0 }
+    }
+    shafts.add({ castInto: () => ({ transmittance: () => () => float(1), makeRoom }) })
+    home.add(shafts)
+    expect(asked).toBe(0)
+    shafts.quality = 'medium'
+    expect(asked).toBe(1)
+    home.remove(shafts)
+    shafts.remove().add(occluder)
+    expect(asked).toBe(1)
+  })
+
   it('leaves the layers of the sky in their order', () => {
     const home = new Atmosphere()
     const shafts = lightShafts(home, camera, new SunDirectionalLight(home))

@@ -6,7 +6,8 @@ import type {
   AtmosphereView,
   LightSource,
   ScreenShadows,
-  ShadowedShafts
+  ShadowedShafts,
+  SharedRows
 } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import { If, float } from 'three/tsl'
@@ -34,6 +35,7 @@ class CastShadow implements AirShadow, CloudCaster {
   readonly #screen: ScreenShadows | undefined
   /** Displacement from the clouds' camera, as their maps know it, to that of the shafts [m]. */
   readonly #shift = vector3()
+  #room: SharedRows | undefined
   /** 1 while the maps are of the shafts' light. */
   readonly #isMapped = number(1)
 
@@ -66,6 +68,11 @@ class CastShadow implements AirShadow, CloudCaster {
     this.#isMapped.value = shadows.source === this.#shafts.source ? 1 : 0
     viewpointMapped(view, this.#shift.value).sub(shadows.camera)
     if (field.worldMap === null && this.isCast) this.#diffuse.update(renderer)
+  }
+
+  makeRoom(): SharedRows {
+    const { shadows } = this.#clouds
+    return (this.#room ??= shadows.left.pop() ?? shadows.makeRoom())
   }
 
   get version(): number {
@@ -115,6 +122,7 @@ class CastShadow implements AirShadow, CloudCaster {
   dispose(): void {
     this.#diffuse.dispose()
     this.#clouds.castsInto.delete(this.#shafts)
+    if (this.#room) this.#clouds.shadows.left.push(this.#room)
     this.#foreground.isRemoved = true
     if (this.#screen === undefined) return
     this.#clouds.screens.delete(this.#screen)

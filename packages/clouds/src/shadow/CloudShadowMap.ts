@@ -1,5 +1,5 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import type { AtmosphereView, LightSource } from '@welkin/atmosphere'
+import type { AtmosphereView, LightSource, SharedRows } from '@welkin/atmosphere'
 import { Quaternion, Vector3 } from 'three'
 import type { RenderTarget, Vector4 } from 'three'
 import { texture } from 'three/tsl'
@@ -10,7 +10,7 @@ import type { CascadeNodes, CloudShadows } from './tsl/sampleShadows'
 import type { ShadingFall } from './tsl/fallDepth'
 import { CASCADE_RATIO, shadowRay, type ShadowRayUniforms } from './tsl/shadowRay'
 import type { LevelTexture, Vec2 } from '../tsl-types'
-import { number, vector3, vector4 } from '../uniforms'
+import { number, vector2, vector3, vector4 } from '../uniforms'
 
 /**
  * Half widths of the cascades for a camera near the ground [m]. Greater: blurred shadows near by; smaller:
@@ -76,6 +76,12 @@ const lightTolerance = ({ halfWidth }: CascadeState): number =>
 /** Columns beside the cascades, for a table of what shadows do to diffuse light: `DiffuseRatioTable` [texels]. */
 export const TABLE_COLUMNS = 32
 
+/**
+ * Rows below the cascades for what each light's shafts keep there: for a picture of 1920×1080 498, for one of 4 to 3 660. Fewer: coarser shafts
+ * in materials.
+ */
+const ROOM_ROWS = 664
+
 interface Cascade {
   readonly nodes: CascadeNodes
   isDrawn: boolean
@@ -117,6 +123,10 @@ export class CloudShadowMap {
   #order = 0
   /** False from so far away that neither clouds nor surfaces read maps. */
   #isNear = true
+  /** Rooms below the cascades. */
+  readonly #rooms: { target: SharedRows['target'] }[] = []
+  /** Those of them that were left, to be had by the next instead of one more. */
+  readonly left: SharedRows[] = []
   /** Index of the thickest layer, with which maps drift. */
   #thickest = 0
 
@@ -145,9 +155,10 @@ export class CloudShadowMap {
     this.nodes = {
       map: texture(this.target.texture) as unknown as LevelTexture<Vec2>,
       cascades: this.#cascades.map(cascade => cascade.nodes),
-      tileCount: width / SIZE,
+      scale: vector2(),
       isMoonlit: number()
     }
+    this.nodes.scale.value.set(SIZE / width, 1)
     this.#ray = {
       toLight: vector3(),
       origin: vector3(),
@@ -181,8 +192,7 @@ export class CloudShadowMap {
     this.#light.copy(isMoonlit ? night.moonDirection.value : view.lightDirection)
     this.#isNear = view.height <= HIGHEST
     if (view.height > (castsIntoAir ? HIGHEST_IN_AIR : HIGHEST)) {
-      for (const cascade of this.#cascades) cascade.isDrawn = false
-      this.#current = null
+      this.#forget()
     } else {
       this.#draw(renderer, view, radius)
     }
@@ -333,8 +343,30 @@ export class CloudShadowMap {
     }
   }
 
+  /**
+   * Makes room below the cascades, for 1,056 columns of what is drawn there in each frame. Where the map grows by that, cascades are drawn anew
+   * in the next update.
+   */
+  makeRoom(): SharedRows {
+    const { target } = this
+    const room = { target, first: target.height, count: ROOM_ROWS }
+    this.#rooms.push(room)
+    target.setSize(target.width, room.first + ROOM_ROWS)
+    this.nodes.scale.value.y = SIZE / target.height
+    this.#forget()
+    this.#updateNodes()
+    return room
+  }
+
+  /** Has all cascades drawn anew. */
+  #forget(): void {
+    for (const cascade of this.#cascades) cascade.isDrawn = false
+    this.#current = null
+  }
+
   /** Frees the map. */
   dispose(): void {
+    for (const room of this.#rooms) room.target = undefined
     this.target.dispose()
     this.#pass.dispose()
   }

@@ -54,7 +54,11 @@ export class DiffuseRatioTable {
       .sub(1)
       .mul(COLUMNS / target.width)
       .add(1)
-    const row = altitude.div(field.view.air.uniforms.thickness).sqrt()
+    const row = altitude
+      .div(field.view.air.uniforms.thickness)
+      .sqrt()
+      .min(1 - 0.5 / ROWS)
+      .mul(nodes.scale.y)
     return nodes.map.sample(vec2(column, row)).level(0)
   }
 

@@ -110,6 +110,26 @@ test('draws all cascades at once when there is noise', () => {
   expect(sky.frames(50, 0)).toBe(0)
 })
 
+test('has room below the cascades for as many as keep something there', () => {
+  const sky = new Sky('fairWeather')
+  const { shadows } = sky
+  const { target, nodes } = shadows
+  sky.frames(1)
+  const drawn = (): number[] => nodes.cascades.map(({ isDrawn }) => isDrawn.value)
+  const [first, second, third] = [0, 1, 2].map(() => shadows.makeRoom())
+  expect([first.first, second.first]).toEqual([256, 256 + first.count])
+  expect(first.target).toBe(target)
+  expect(target.height).toBe(256 + 3 * first.count)
+  expect(nodes.scale.value.y * target.height).toBeCloseTo(256, 9)
+  // What was there went with the smaller texture.
+  expect(drawn()).toEqual([0, 0, 0])
+  expect(sky.frames(1, 0)).toBe(3)
+  expect(drawn()).toEqual([1, 1, 1])
+  expect(sky.frames(50, 0)).toBe(0)
+  shadows.dispose()
+  expect([first, second, third].map(room => room.target)).toEqual([undefined, undefined, undefined])
+})
+
 test('serves all cascades in turn while everything changes', () => {
   const sky = new Sky('fairWeather')
   sky.frames(1)

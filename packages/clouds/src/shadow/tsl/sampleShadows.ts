@@ -1,4 +1,4 @@
-import type { Vector3, Vector4 } from 'three'
+import type { Vector2, Vector3, Vector4 } from 'three'
 import { If, float, mix, vec2, vec3, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../../tsl-types'
@@ -20,8 +20,8 @@ export interface CascadeNodes {
 export interface CloudShadows {
   readonly map: LevelTexture<Vec2>
   readonly cascades: readonly CascadeNodes[]
-  /** Width of the map in tiles. */
-  readonly tileCount: number
+  /** Size of a tile in texture coordinates: other things may lie beside and below. */
+  readonly scale: UniformNode<'vec2', Vector2>
   /** 1 for a map of moonlight, 0 of sunlight. */
   readonly isMoonlit: UniformNode<'float', number>
   /** Displacement from the camera of the map to the one of the shader, if they are two [m]. */
@@ -63,7 +63,7 @@ const NARROWER_END = MAXIMUM_DISTANCE / CASCADE_RATIO
  * low sun and below tall clouds, comes from the wider ones: without, storms are bright where cascades meet.
  */
 export function sampleShadows(
-  { map, cascades, tileCount, shift }: CloudShadows,
+  { map, cascades, scale, shift }: CloudShadows,
   offset: Vec3
 ): PlaceDepths {
   const from = (shift === undefined ? offset : offset.add(shift)).toConst()
@@ -83,7 +83,7 @@ export function sampleShadows(
       .mul(isDrawn)
       .toConst()
     const texel = map
-      .sample(vec2(x.add(atlasTile).div(tileCount), y))
+      .sample(vec2(x.add(atlasTile), y).mul(scale))
       .level(0)
       .toConst() as Vec4
     const own = texel.zw.mul(shareAbove(texel, above)).add(beyond)
@@ -120,7 +120,7 @@ function depthsAt(map: CloudShadows['map'], inAtlas: Vec4): LightDepths {
  * @returns Depths by the distance from the start [m].
  */
 export function sampleShadowsAlong(
-  { map, cascades, tileCount }: CloudShadows,
+  { map, cascades, scale }: CloudShadows,
   from: Vec3,
   direction: Vec3,
   dither: Float
@@ -139,7 +139,7 @@ export function sampleShadowsAlong(
     const middle = vec3(0.5, 0.5, 0).sub(start).mul(perSlope).toConst() as Vec3
     const half = extent.mul(perSlope.abs()).toConst() as Vec3
     const [first, last] = [middle.sub(half), middle.add(half)]
-    const toAtlas = vec3(1 / tileCount, 1, 1)
+    const toAtlas = vec3(scale, 1)
     return {
       start: start
         .add(vec3(atlasTile, 0, 0))
