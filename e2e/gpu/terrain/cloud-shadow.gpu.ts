@@ -1,12 +1,13 @@
 import { Atmosphere, SunDirectionalLight } from '@welkin/atmosphere'
-import { CloudLightTable, CloudNoise, cloudPreset, cloudShadow, clouds } from '@welkin/clouds'
+import { CloudLayers, CloudLightTable, cloudShadow, clouds } from '@welkin/clouds'
 import { Terrain, type HeightSource } from '@welkin/terrain'
 import { PerspectiveCamera, Scene } from 'three'
-import { float, vec4 } from 'three/tsl'
+import { float, smoothstep, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { drawToFloat } from '../harness/atmosphere'
 import { cloudTransmittance } from '../harness/cloud-transmittance'
 import { mean } from '../harness/cloud-scene'
+import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { gpuTest, takeFineShadows } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import { levelGround } from '../harness/ground'
@@ -41,11 +42,16 @@ gpuTest('the ground is as dark under clouds as these let light through', async t
   terrain.receiveShadow = true
   const sun = new SunDirectionalLight(atmosphere)
   const scene = new Scene().add(terrain, sun, sun.target)
-  const layers = cloudPreset('fairWeather')
-  layers.at(0).set({ coverage: 0.55 })
-  const [noise, light] = [new CloudNoise(), new CloudLightTable()]
-  const options = { quality: 'low', noise, light } as const
-  const node = clouds(vec4(0), float(1), camera, atmosphere, layers, options)
+  const [noise, light] = [new SparseNoise(), new CloudLightTable()]
+  const layers = new CloudLayers([{ ...fog, baseAltitude: 1500, topAltitude: 2500 }])
+  const node = clouds(vec4(0), float(1), camera, atmosphere, layers, {
+    quality: coarse,
+    noise,
+    light,
+    // Heaps with soft edges, without noise: half a minute less in software.
+    extinction: ({ offset: { x, y, z } }) =>
+      smoothstep(-0.2, 0.2, x.div(230).sin().add(y.div(310).sin()).add(z.div(270).sin())).mul(0.01)
+  })
   node.time = 0
   const pipeline = new RenderPipeline(renderer)
   pipeline.outputNode = node

@@ -7,13 +7,15 @@ import { gpuTest } from '../harness/gpu-test'
 
 const SIZE = { width: 48, height: 32 }
 
-/** A slope, a plain, the antimeridian, and a place a tenth of a metre from a pole. */
+/** A slope, a place a tenth of a metre from a pole, and the antimeridian. */
 const PLACES = [
   [1, 47],
-  [12.3, 45.6],
-  [180, -12],
-  [70, 89.999999]
+  [70, 89.999999],
+  [180, -12]
 ] as const
+
+/** Angle of view [°]: a wider one has three times as many pages, which are drawn in software. */
+const FOV = 15
 
 gpuTest('normals 2 m away are drawn as the CPU has them, within 0.5°', async t => {
   const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
@@ -26,13 +28,14 @@ gpuTest('normals 2 m away are drawn as the CPU has them, within 0.5°', async t 
   const { material } = terrain
   const drawnNormal = (material as unknown as { ground: Node<'vec3'> }).ground
   const scene = new Scene().add(terrain)
-  const camera = new PerspectiveCamera(60, SIZE.width / SIZE.height, 0.1, 1e9)
+  const camera = new PerspectiveCamera(FOV, SIZE.width / SIZE.height, 0.1, 1e9)
   const normal = new Vector3()
   const point = new Vector3()
   let worst = 0
   let steepest = 0
   let count = 0
-  for (const [longitude, latitude] of PLACES) {
+  const places = PLACES.slice(0, t.backend === 'webgpu' ? 3 : 2)
+  for (const [longitude, latitude] of places) {
     const height = terrain.heightAt(longitude, latitude) + 2
     ellipsoid.geodeticToECEF({ longitude, latitude, height }, camera.position)
     camera.quaternion.setFromRotationMatrix(ellipsoid.localYUpFrame(camera.position, new Matrix4()))
@@ -63,7 +66,8 @@ gpuTest('normals 2 m away are drawn as the CPU has them, within 0.5°', async t 
   const degrees = (angle: number): string => ((angle * 180) / Math.PI).toFixed(3)
   t.note(`${count} pixels, within ${degrees(worst)}°, on slopes up to ${degrees(steepest)}°`)
   terrain.dispose()
-  if (count < 4000) throw new Error(`only ${count} pixels of ground`)
+  if (count < 0.99 * places.length * SIZE.width * SIZE.height)
+    throw new Error(`only ${count} pixels of ground`)
   if (steepest < 0.1) throw new Error('all places are level')
   if (worst > Math.PI / 360) throw new Error(`normals are ${degrees(worst)}° off`)
 })

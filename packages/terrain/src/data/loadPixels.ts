@@ -16,14 +16,19 @@ export interface Pixels {
  */
 export const GONE: ReadonlySet<number> = new Set([204, 400, 403, 404, 410])
 
+/** Time after which a request has failed: servers that hang would hold up all others [ms]. */
+const PATIENCE = 30_000
+
 /**
  * Loads the pixels of a picture in a browser, as they stand in the file: no colour profile or alpha is applied to them.
  *
  * @returns Pixels, or null where there is no picture: the server says so, or it is corrupt.
- * @throws If the network or the server fails, or the signal is aborted.
+ * @throws If the network or the server fails, takes longer than 30 s, or the signal is aborted.
  */
 export async function loadPixels(url: string, signal: AbortSignal): Promise<Pixels | null> {
-  const response = await fetch(url, { signal })
+  const response = await fetch(url, {
+    signal: AbortSignal.any([signal, AbortSignal.timeout(PATIENCE)])
+  })
   if (GONE.has(response.status)) return null
   if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`)
   const blob = await response.blob()

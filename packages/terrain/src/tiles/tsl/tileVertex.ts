@@ -27,7 +27,7 @@ export const morphStart = (detail: number): number => (detail + 1) / (2 * detail
  * Height of a vertex over the line between its neighbours, to its distance, up to which it moves to one of them, and from which it stays [–]: half a
  * pixel and one at 1080 lines. Where ground is flat triangles are twice as large then: pixels along their edges cost double (4.9 for 4.2 ms at eye height).
  */
-const FLAT = [0.0005, 0.001] as const
+export const FLAT = [0.0005, 0.001] as const
 
 /** Distance within which the ceiling holds; beyond, it rises by as much as distance does [cells]. */
 const CLOSE = 3
@@ -36,10 +36,10 @@ const CLOSE = 3
  * Width of skirts, which lean outwards under the ground of the neighbour [cells]. Less: between two tiles a ray along their edge sees
  * the gap that rounding leaves, which is a part of a pixel wide. Greater: they stand out of ground steeper than they are.
  */
-const SKIRT_WIDTH = 0.4
+export const SKIRT_WIDTH = 0.4
 
 /** Depth of skirts that are deeper than a cell, at most [m]. */
-const DEEPEST_SKIRT = 2e4
+export const DEEPEST_SKIRT = 2e4
 
 /** Vertex of a tile. */
 export interface TileVertex {
@@ -92,8 +92,9 @@ export function tileVertex(
   const cells = positionGeometry.xy as unknown as Vec2
   const even = cells.mul(0.5).floor().mul(2).toConst('even') as Vec2
   const start = morphStart(detail)
+  // That of the vertex to which an odd one moves: wholly moved it must be there, height and all, or slivers are left between them.
   const distance = tileOffset.xyz
-    .add(fromCenter(alongCube(cells)))
+    .add(fromCenter(alongCube(even)))
     .sub(datum)
     .length()
     .toConst()
