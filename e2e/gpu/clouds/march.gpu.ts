@@ -1,5 +1,5 @@
 import { CloudLightTable, cloudPreset, cloudQualities, type CloudQuality } from '@welkin/clouds'
-import { float, vec4 } from 'three/tsl'
+import { float, vec3, vec4 } from 'three/tsl'
 import { QualityUniforms } from '../../../packages/clouds/src/march/quality'
 import { marchClouds } from '../../../packages/clouds/src/march/tsl/march'
 import { random } from '../harness/atmosphere'
@@ -8,7 +8,7 @@ import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 
-const { high, medium } = cloudQualities
+const { high, medium, low } = cloudQualities
 
 /** Steps of an eighth of the length of `high`. */
 const fine: CloudQuality = {
@@ -69,6 +69,54 @@ gpuTest(
       t.note(`${name}: cover ${mean(expected).toFixed(3)}, missed ${missed}, more ${more}`)
       expectTrue(missed < limit, `${name}: rays miss ${missed} of the sky`)
       expectTrue(more < limit, `${name}: rays meet clouds in ${more} of the sky that is clear`)
+    }
+    light.dispose()
+    scene.dispose()
+  },
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
+  'rays find the face of a tower behind small clouds whose layer they leave',
+  async t => {
+    const layers = cloudPreset('cumulonimbus')
+    const scene = await cloudScene(t, layers, { longitude: 139.853, latitude: 35.845, height: 600 })
+    const { field } = scene
+    field.pixelAngle.value = 3.9e-3
+    scene.update(300)
+    const next = random(7)
+    /** Azimuth from north and elevation [rad], to the tower's foot, and the jitter. */
+    const rays = Array.from({ length: 600 }, () => [
+      (15 + 10 * next()) * (Math.PI / 180),
+      (4.5 + 2.7 * next()) * (Math.PI / 180),
+      next(),
+      0
+    ])
+    const quality = new QualityUniforms()
+    const light = new CloudLightTable()
+    light.bake()
+    field.depthScale.value = light.nodes.depthScale.value
+    const { up } = field.view
+    const distances = async (of: CloudQuality, skipping: number): Promise<number[]> => {
+      quality.set(of)
+      field.skipping.value = skipping
+      const found = await evaluateOnGpu(scene.renderer, rays, ({ x, y, z }) => {
+        const east = vec3(0, 0, 1).cross(up).normalize().toConst()
+        const north = up.cross(east).toConst()
+        const level = north.mul(x.cos()).add(east.mul(x.sin()))
+        const direction = level.mul(y.cos()).add(up.mul(y.sin())).normalize().toConst()
+        const ray = { direction, end: float(6e4), jitter: z }
+        const { distance, transmittance } = marchClouds({ field, light: light.nodes, quality }, ray)
+        return vec4(distance, transmittance, 0, 0)
+      })
+      return rays.map((_, i) => (found[4 * i + 1] < 0.5 ? found[4 * i] : 6e4))
+    }
+    const expected = await distances(fine, FINE_SKIPPING)
+    for (const [name, of] of Object.entries({ medium, low })) {
+      const got = await distances(of, 1)
+      const late = mean(got.map((distance, i) => (distance > expected[i] + 300 ? 1 : 0)))
+      t.note(`${name}: ${late} of the rays are late`)
+      expectTrue(late < 0.02, `${name}: ${late} of the rays jump into the tower, or over it`)
     }
     light.dispose()
     scene.dispose()

@@ -164,7 +164,7 @@ export interface FoundClouds {
   readonly extinction: Vec2
   readonly likelyDistance: Float
   readonly isNear: Bool
-  /** Greatest extinction there, as it counts in the light that comes through [1/m]. */
+  /** Greatest extinction there, as it counts in the light that comes through; 0 if nothing was sampled [1/m]. */
   readonly greatest: Float
 }
 
@@ -192,7 +192,8 @@ export function advance(
     const isNext = isCloudy.or(likelyDistance.lessThan(fine)).toConst()
     part.assign(isNext.and(isFine.not()).select(jitter.max(LEAST_PART), 1))
     isFine.assign(isNext)
-    finest.assign(stepIn(quality, greatest, longest))
+    // Where all layers are known to be clear, none was sampled: steps as long as in thin air would jump over towers.
+    finest.assign(greatest.greaterThan(0).select(stepIn(quality, greatest, longest), finest))
     likely.assign(likelyDistance)
     isNear.assign(near)
     before.assign(length)
