@@ -67,13 +67,21 @@ export const Ridge: Story = {
 }
 
 /** Towers against the sun, in haze and mist. */
-export const Towers: Story = { name: 'Towers in haze', args: argsOf('towers') }
+export const Towers: Story = {
+  name: 'Towers in haze',
+  args: argsOf('towers'),
+  tags: ['screenshot', 'webgpu-only']
+}
 
 /** A storm's shadow on its anvil and on the haze below, from 9 km. */
 export const Storm: Story = { name: "Storm's shadow from 9 km", args: argsOf('storm') }
 
 /** Rays that run together opposite the sunset. */
-export const Opposite: Story = { name: 'Anticrepuscular rays', args: argsOf('opposite') }
+export const Opposite: Story = {
+  name: 'Anticrepuscular rays',
+  args: argsOf('opposite'),
+  tags: ['screenshot', 'webgpu-only']
+}
 
 /** Moonlight through the gaps of a deck. */
 export const Moonlight: Story = { args: argsOf('moonlight') }

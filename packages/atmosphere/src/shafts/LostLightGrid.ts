@@ -31,8 +31,11 @@ const APART_DEPTH = 6e4
 /** Octaves that none is beyond but means marked as apart. */
 const STEEP_LIMIT = 1100
 
-/** Octaves of depth by which pixels differ that weigh half as much as those at one depth. Greater: halos at silhouettes. */
+/** Octaves of the light of even air by which pixels differ that weigh half as much as those that have the same. Greater: halos at silhouettes. */
 const SIMILAR = 0.02
+
+/** Octaves of depth by which pixels differ at least that much, however alike their light is. Smaller: ground at the horizon has the sky's. */
+const DISTINCT = 0.25
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
@@ -99,7 +102,7 @@ export interface LostLight extends SeenAir {
  * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
  * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of
  * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and of four beside
- * silhouettes and edges of clouds. Those at its depth count most. One that is farther than all loses light up to their depth:
+ * silhouettes and edges of clouds. Those that are alike in light and depth count most. One that is farther than all loses light up to their depth:
  * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
  *
  * A depth is the distance at which even air has as much light as is seen: clouds hide some of it.
@@ -231,9 +234,10 @@ export class LostLightGrid {
     const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
     const own = this.#depthOf(beyond).toConst() as Float
+    const part = shownOf(beyond).toConst()
     const nearer = (depth: Float): Float =>
       depth.sub(own).clamp(tolerance.negate(), tolerance).mul(Math.LN2).add(1)
-    const lost = mean.rgb.mul(shownOf(beyond).mul(nearer(mean.w)).div(LIGHT_SCALE)).toVar() as Vec3
+    const lost = mean.rgb.mul(part.mul(nearer(mean.w)).div(LIGHT_SCALE)).toVar() as Vec3
     const isLit = mean.w.sub(LIT_DEPTH).abs().lessThan(NEAR_MEAN)
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN).and(isLit.not()), () => {
       const size = this.#gridSize
@@ -253,9 +257,9 @@ export class LostLightGrid {
         const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
         const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
         const other = sampleLevel0(this.#texels, at).toConst()
-        const apart = other.w.sub(own).toConst()
-        const shown = shownOf(this.beyond(other.w.exp2()))
-        const weight = shown.div(apart.mul(apart).add(even)).toConst()
+        const light = log2(shownOf(this.beyond(other.w.exp2())).div(part))
+        const apart = other.w.sub(own).abs().min(DISTINCT).max(light.abs()).toConst()
+        const weight = apart.mul(apart).add(even).reciprocal().toConst()
         sums.addAssign(other.mul(weight))
         weights.addAssign(weight)
       })
