@@ -4,7 +4,7 @@ import { cubeToEllipsoid, faceAxes } from '../src/tiles/cpu/cubeSphere'
 import type { Tile } from '../src/tiles/Tile'
 import { DEEPEST_SKIRT, FLAT, morphStart, SKIRT_WIDTH } from '../src/tiles/tsl/tileVertex'
 
-/** What all tiles of a drawing share. ECEF [m]. */
+/** Properties that all tiles of a drawing share. ECEF [m]. */
 export interface Drawing {
   readonly ellipsoid: Ellipsoid
   readonly eye: Vector3
