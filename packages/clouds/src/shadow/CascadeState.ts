@@ -1,14 +1,51 @@
 import type { Quaternion } from 'three'
 import { Vector3 } from 'three'
+import { CASCADE_RATIO } from './tsl/shadowRay'
 
 /** Texels along an edge of a cascade. */
 export const CASCADE_SIZE = 256
+
+/** Columns beside the cascades, for a table of what shadows do to diffuse light: `DiffuseRatioTable` [texels]. */
+export const TABLE_COLUMNS = 32
 
 /**
  * Sine of the least angle between rays of light and the plane that the map lies in. Smaller: coarse shadows
  * at dusk (*Cirrus*).
  */
 const LEAST_SLOPE = 0.2
+
+/**
+ * Half widths of the cascades for a camera near the ground [m]. Greater: blurred shadows near by; smaller:
+ * they end nearer (*Shadows*).
+ */
+export const HALF_WIDTHS = [0, 1, 2].map(i => 5000 * CASCADE_RATIO ** i)
+
+/**
+ * Change of the light's direction [rad], times that of `lightTolerance`, or of the place in half widths, for which a cascade
+ * is drawn at once. Greater: shadows follow a jump late (*Shadows*).
+ */
+export const LIGHT_JUMP = 0.01
+export const PLACE_JUMP = 0.5
+
+/**
+ * Changes for which a cascade is drawn anew: moves of its middle [texels], moves of layers against each
+ * other [texels], and of the light's direction [rad], which move the shadow of a cloud 3 km away by a third of a texel of the
+ * narrowest cascade. Greater: shadows jump instead of drifting (*Shadows*, which has "Time lapse"); smaller: they are drawn in
+ * every frame.
+ */
+export const STALE_PLACE = 8
+export const STALE_DRIFT = 0.25
+export const STALE_LIGHT = 4.8e-3
+
+/**
+ * Most that a wider cascade tolerates of the light's direction, over the narrowest one. Greater: depths along low light,
+ * which change with its direction, are late.
+ */
+const MOST_TOLERANCE = 4
+
+/** Change of the light's direction that a cascade tolerates over the narrowest one: as much as its texels are wider. */
+export const lightTolerance = ({ halfWidth }: CascadeState): number =>
+  Math.min(halfWidth / HALF_WIDTHS[0], MOST_TOLERANCE)
 
 const _normal = new Vector3()
 const _offset = new Vector3()

@@ -5,18 +5,23 @@ import type { RenderTarget, Vector4 } from 'three'
 import { texture } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { viewpointMapped, type CloudField } from '../density/CloudField'
-import { CASCADE_SIZE as SIZE, CascadeState } from './CascadeState'
+import {
+  CASCADE_SIZE as SIZE,
+  CascadeState,
+  HALF_WIDTHS,
+  LIGHT_JUMP,
+  lightTolerance,
+  PLACE_JUMP,
+  STALE_DRIFT,
+  STALE_LIGHT,
+  STALE_PLACE,
+  TABLE_COLUMNS
+} from './CascadeState'
 import type { CascadeNodes, CloudShadows } from './tsl/sampleShadows'
 import type { ShadingFall } from './tsl/fallDepth'
-import { CASCADE_RATIO, shadowRay, type ShadowRayUniforms } from './tsl/shadowRay'
+import { shadowRay, type ShadowRayUniforms } from './tsl/shadowRay'
 import type { LevelTexture, Vec2 } from '../tsl-types'
 import { number, vector2, vector3, vector4 } from '../uniforms'
-
-/**
- * Half widths of the cascades for a camera near the ground [m]. Greater: blurred shadows near by; smaller:
- * they end nearer (*Shadows*).
- */
-const HALF_WIDTHS = [0, 1, 2].map(i => 5000 * CASCADE_RATIO ** i)
 
 /**
  * Height of the camera above which cascades double in width with each doubling of it [m]. Greater: shadows
@@ -41,40 +46,10 @@ const MOST_WIDENING = 64
 const ANCHOR_COSINE = Math.cos(0.005)
 
 /**
- * Change of the light's direction [rad], times that of `lightTolerance`, or of the place in half widths, for which a cascade
- * is drawn at once. Greater: shadows follow a jump late (*Shadows*).
- */
-const LIGHT_JUMP = 0.01
-const PLACE_JUMP = 0.5
-
-/**
  * Frames over which a cascade is drawn anew, a strip in each. More: frames take less long, shadows follow
  * later (*Shadows*).
  */
 const STRIPS = 4
-
-/**
- * Changes for which a cascade is drawn anew: moves of its middle [texels], moves of layers against each
- * other [texels], and of the light's direction [rad], which move the shadow of a cloud 3 km away by a third of a texel of the
- * narrowest cascade. Greater: shadows jump instead of drifting (*Shadows*, which has "Time lapse"); smaller: they are drawn in
- * every frame.
- */
-const STALE_PLACE = 8
-const STALE_DRIFT = 0.25
-const STALE_LIGHT = 4.8e-3
-
-/**
- * Most that a wider cascade tolerates of the light's direction, over the narrowest one. Greater: depths along low light,
- * which change with its direction, are late.
- */
-const MOST_TOLERANCE = 4
-
-/** Change of the light's direction that a cascade tolerates over the narrowest one: as much as its texels are wider. */
-const lightTolerance = ({ halfWidth }: CascadeState): number =>
-  Math.min(halfWidth / HALF_WIDTHS[0], MOST_TOLERANCE)
-
-/** Columns beside the cascades, for a table of what shadows do to diffuse light: `DiffuseRatioTable` [texels]. */
-export const TABLE_COLUMNS = 32
 
 /**
  * Rows below the cascades for what each light's shafts keep there: for a picture of 1920×1080 498, for one of 4 to 3 660. Fewer: coarser shafts
@@ -125,7 +100,7 @@ export class CloudShadowMap {
   #isNear = true
   /** Rooms below the cascades. */
   readonly #rooms: { target: SharedRows['target'] }[] = []
-  /** Those of them that were left, to be had by the next instead of one more. */
+  /** Rooms that were left, to be had by the next instead of one more. */
   readonly left: SharedRows[] = []
   /** Index of the thickest layer, with which maps drift. */
   #thickest = 0

@@ -6,8 +6,8 @@ import { columnOf, cosLightOf } from '../environment/tsl/lightColumns'
 import { diffuseRatio } from '../environment/tsl/overcast'
 import type { CloudLight } from '../light/CloudLightTable'
 import type { Float, Vec2, Vec4 } from '../tsl-types'
-import { CASCADE_SIZE as ROWS } from './CascadeState'
-import { TABLE_COLUMNS as COLUMNS, type CloudShadowMap } from './CloudShadowMap'
+import { CASCADE_SIZE as ROWS, TABLE_COLUMNS as COLUMNS } from './CascadeState'
+import type { CloudShadowMap } from './CloudShadowMap'
 
 /**
  * Diffuse light among clouds over that without clouds, by altitude and cosine of the light, where layers are the same
