@@ -3,9 +3,10 @@ import { Matrix4, PerspectiveCamera, Vector3 } from 'three'
 import { expect, it } from 'vitest'
 import { viewerOf } from '../src/tiles/cpu/viewer'
 import { faceAxes } from '../src/tiles/cpu/cubeSphere'
-import type { Tile } from '../src/tiles/Tile'
+import { CORNERS, type Tile } from '../src/tiles/Tile'
 import { noTiles, TileTree } from '../src/tiles/TileTree'
 import { DrawnTile, type Drawing } from './DrawnTile'
+import { randomNumbers } from './randomNumbers'
 
 const earth = Ellipsoid.WGS84
 const RESOLUTION = 8
@@ -46,15 +47,6 @@ const bounds = {
   variation: () => 2 * HIGHEST,
   sampleAt: () => ({ height: 0, gradient: new Vector3() }),
   loadHeights: () => new Float32Array(0)
-}
-
-/** Repeatable random numbers in [0, 1). */
-function randomNumbers(seed: number): () => number {
-  let state = seed
-  return () => {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0
-    return state / 2 ** 32
-  }
 }
 
 /** Tiles of a selection about points of the cube. */
@@ -119,12 +111,6 @@ class Ground {
 }
 
 const near = new Vector3()
-const CORNERS = [
-  [-1, -1],
-  [1, -1],
-  [-1, 1],
-  [1, 1]
-] as const
 
 function faceOf({ x, y, z }: Vector3): number {
   const sizes = [x, y, z].map(Math.abs)

@@ -9,6 +9,7 @@ import type { PageSource } from '../src/pages/PageSource'
 import type { Tile } from '../src/tiles/Tile'
 import { DEFAULTS } from '../src/TerrainOptions'
 import { viewerOf, type Viewer } from '../src/tiles/cpu/viewer'
+import { randomNumbers } from './randomNumbers'
 
 const earth = Ellipsoid.WGS84
 const options = { ...DEFAULTS, resolution: 4, detail: 1.5 }
@@ -18,15 +19,6 @@ const atlas = new Map<number, { tile: Tile; height: number }>()
 vi.spyOn(PageBaker.prototype, 'bake').mockImplementation((_, tile, slot, heights) => {
   atlas.set(slot, { tile, height: heights![0] })
 })
-
-/** Repeatable random numbers in [0, 1). */
-function randomNumbers(seed: number): () => number {
-  let state = seed
-  return () => {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0
-    return state / 2 ** 32
-  }
-}
 
 /** Height that tells a place: of neighbouring tiles others, whatever their level. */
 const heightAt = ({ x, y, z }: Vector3): number => 1000 + 900 * Math.sin((x + 2 * y + 3 * z) / 1e6)

@@ -135,7 +135,8 @@ export class Tile {
   }
 }
 
-const CORNERS = [
+/** Directions from the middle of a tile to its corners, by column and row. */
+export const CORNERS = [
   [-1, -1],
   [1, -1],
   [-1, 1],
