@@ -3,9 +3,11 @@ import {
   aerialPerspectiveFog,
   Atmosphere,
   heightFog,
+  forwardShafts,
   lightShafts,
   skyBackground,
   SunDirectionalLight,
+  type ForwardShafts,
   type LightShaftsQuality
 } from '@welkin/atmosphere'
 import { cloudAirShadow, CloudLightTable, CloudNoise, cloudPreset, clouds } from '@welkin/clouds'
@@ -92,11 +94,13 @@ function city(
     Object.assign(light.shadow, { shadowNode })
   }
   scene.add(light, light.target)
-  const shafts = quality === null ? undefined : lightShafts(atmosphere, camera, light, { quality })
+  const isForward = path === 'forward'
+  const make = isForward ? forwardShafts : lightShafts
+  const shafts = quality === null ? undefined : make(atmosphere, camera, light, { quality })
   const scenePass = pass(scene, camera, { samples: 0 })
   const pipeline = new RenderPipeline(renderer)
-  if (path === 'forward') {
-    if (shafts) atmosphere.add(shafts)
+  if (isForward) {
+    if (shafts) atmosphere.add(shafts as ForwardShafts)
     scene.backgroundNode = skyBackground(atmosphere)
     scene.fogNode = aerialPerspectiveFog(atmosphere)
   } else {
@@ -114,7 +118,7 @@ function city(
     draw: () => {
       nextFrame()
       renderer.setRenderTarget(target)
-      if (path === 'forward') renderer.render(scene, camera)
+      if (isForward) renderer.render(scene, camera)
       else pipeline.render()
       renderer.setRenderTarget(null)
     },

@@ -1,12 +1,11 @@
 import { Vector2 } from 'three'
-import { Fn, If, bool, float, mix, screenCoordinate, screenUV, uv, vec3, vec4 } from 'three/tsl'
-import type { Node, NodeFrame, NodeMaterial, Renderer } from 'three/webgpu'
+import { Fn, If, float, mix, uv, vec3 } from 'three/tsl'
+import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
 import { sampleVolume } from '../skyVolume/tsl/skyVolume'
-import { scatterSegment } from '../scattering/tsl/segment'
-import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import type { Bool, Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -17,20 +16,12 @@ import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
 import { LostLightGrid, type LostLight } from './LostLightGrid'
 import { seenLight, type SeenForeground } from './tsl/seenLight'
-import { shadowAt, type ShaftRay } from './tsl/shadowsAlong'
+import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf } from './tsl/without'
-import { ditheredDark } from './tsl/polarMap'
-import { screenRay } from '../view/tsl/screenRay'
 import { DepthRays } from '../view/DepthRays'
 
 /** Transmittance below which a foreground layer hides what is behind it. Greater: shafts end at thin clouds (*Below a broken deck*). */
 const MIN_TRANSMITTANCE = 0.01
-
-/** Samples of the shadow between two points of a mesh's ray. Fewer: grain at the edges of shadows, by orthographic cameras. */
-const MESH_SAMPLES = 6
-
-/** Height in radii of the planet above which meshes have no shafts: from there one direction holds all rays of light. */
-const MAX_MESH_HEIGHT = 20
 
 /** Transmittance from which on a foreground is not seen. */
 const CLEAR = 0.99
@@ -59,53 +50,41 @@ const _size = new Vector2()
  */
 export class ScreenShafts implements ScreenShadows {
   readonly foreground: ForegroundLayer | undefined
-  readonly #shafts: CameraShafts
-  /** True for a mesh of air, whose rays end at the planet or nowhere. */
-  readonly isMesh: boolean
-  readonly #rays: DepthRays
+  protected readonly shafts: CameraShafts
+  protected readonly rays: DepthRays
   readonly grid = new LostLightGrid()
   /** 1 if there is a medium, such as fog, in the light of the shafts. */
   readonly #hasMedia = number()
   /** `strengthNow`; 0 while the node of a foreground layer draws the shafts. */
-  readonly #strength = number()
-  /** Material that marches these shadows, and version of the shafts that it was compiled for. */
-  #material: NodeMaterial | undefined
-  #compiled = 0
-  /** Likewise, for a mesh that marches its air itself. */
-  readonly #marchedStrength = number()
+  protected readonly strength = number()
   /** 1 if what is behind the foreground has shafts already. */
   readonly #isForward = number()
   /** Output per lost light of which the grid keeps parts: half floats hold the moon's, too. */
   readonly #gain = number(1)
 
-  constructor(shafts: CameraShafts, depthNode: Node | null, foreground?: ForegroundLayer) {
+  /** @param isMesh - True for a mesh of air. */
+  constructor(
+    shafts: CameraShafts,
+    depthNode: Node,
+    foreground?: ForegroundLayer,
+    readonly isMesh = false
+  ) {
     this.foreground = foreground
-    this.#shafts = shafts
-    this.isMesh = depthNode === null
-    this.#rays = new DepthRays(depthNode ?? float(0.5), shafts.camera)
-  }
-
-  compileWith(material: NodeMaterial): void {
-    const key = material.customProgramCacheKey.bind(material)
-    material.customProgramCacheKey = () => key() + String(this.#shafts.version)
-    this.#material = material
-    this.#compiled = this.#shafts.version
+    this.shafts = shafts
+    this.rays = new DepthRays(depthNode, shafts.camera)
   }
 
   prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
-    const shafts = this.#shafts
+    const shafts = this.shafts
     // Anew, after a dispose.
     shafts.screens.add(this)
     shafts.prepare(renderer, view, frame)
     shafts.view.update(view)
     shafts.update(view)
-    if (this.#material === undefined || this.#compiled === shafts.version) return
-    this.#compiled = shafts.version
-    this.#material.needsUpdate = true
   }
 
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
-    const shafts = this.#shafts
+    const shafts = this.shafts
     shafts.screens.add(this)
     if (this.#isDrawnByForeground) return
     if (this.foreground === undefined) shafts.prepare(renderer, view, frame)
@@ -129,110 +108,48 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   update(view: AtmosphereView): void {
-    this.#shafts.update(view)
-    this.#strength.value = this.#isDrawnByForeground ? 0 : this.#shafts.strengthNow.value
-    this.#isForward.value = Number(this.#shafts.isForward)
+    this.shafts.update(view)
+    this.strength.value = this.#isDrawnByForeground ? 0 : this.shafts.strengthNow.value
+    this.#isForward.value = Number(this.shafts.isForward)
   }
 
   lostAt(position: Vec3, isSky: Bool): Vec3 | undefined {
     if (this.#isDrawnByForeground) return undefined
     const lost = vec3(0).toVar()
-    If(this.#strength.greaterThan(0), () => {
+    If(this.strength.greaterThan(0), () => {
       lost.assign(this.#lostUpTo(this.#endAt(position, isSky)))
     })
     return lost
   }
 
-  prepareMesh(frame: NodeFrame, sun: object, isMarched: boolean): void {
-    const { view, camera, strengthNow } = this.#shafts
-    const { atmosphere, source } = view
-    const isTheirs = frame.camera === camera && sun === atmosphere && source === atmosphere.sun
-    const seen = isTheirs ? view.prepare(frame) : undefined
-    this.#strength.value = this.#marchedStrength.value = 0
-    if (seen === undefined) return
-    const { bottomRadius } = atmosphere.parameters
-    if (isMarched && seen.height < MAX_MESH_HEIGHT * bottomRadius) {
-      this.prepareShadows(frame.renderer!, seen, frame)
-      this.#marchedStrength.value = strengthNow.value
-    }
-    if (isMarched) return
-    this.prepare(frame.renderer!, seen, frame)
-    this.update(seen)
-  }
-
-  scatterAlong(entry: Float): typeof scatterSegment {
-    const { direction, origin } = screenRay()
-    const start = this.#shafts.view.toMapped(origin).toConst() as Vec3
-    const along = this.#shafts.view.toMapped(direction).normalize().toConst() as Vec3
-    const offsetAt = (distance: Float): Vec3 => start.add(along.mul(entry.add(distance)))
-    return (air, ray, from, to) => {
-      const { direct, diffuse } = this.#arriving(offsetAt(from), offsetAt(to))
-      const [once, again] = [true, false].map(isDirect =>
-        scatterSegment(air, ray, from, to, { direct: isDirect, diffuse: !isDirect })
-      )
-      return {
-        molecular: once.molecular.mul(direct).add(again.molecular.mul(diffuse)),
-        aerosol: once.aerosol.mul(direct),
-        depth: once.depth
-      }
-    }
-  }
-
-  /** Parts of the light that arrive between two points, by their offsets [m]: straight from the source, and scattered before. */
-  #arriving(start: Vec3, end: Vec3): { direct: Float; diffuse: Vec4 } {
-    const { view, shadowedAir } = this.#shafts
-    const strength = this.#marchedStrength
-    const direct = float(1).toVar() as Float
-    const diffuse = vec4(1).toVar() as Vec4
-    If(strength.greaterThan(0), () => {
-      const jitter = staggered(screenCoordinate.xy.floor())
-      const share = strength.min(1).div(MESH_SAMPLES).toConst() as Float
-      loop('meshSample', MESH_SAMPLES, index => {
-        const part = float(index).add(jitter).div(MESH_SAMPLES)
-        const offset = mix(start, end, part).toConst() as Vec3
-        const distance = offset.length().max(1e-3).toConst() as Float
-        const ray = { direction: offset.div(distance).toConst() as Vec3, jitter }
-        const { dark, missing } = shadowAt(view, shadowedAir, ray, distance, ditheredDark)
-        direct.subAssign(dark.mul(share))
-        if (missing !== null) diffuse.subAssign(missing.mul(share))
-      })
-    })
-    return { direct, diffuse }
-  }
-
-  /** Place of a fragment in the picture: meshes have coordinates of their own. */
-  get #place(): Vec2 {
-    return this.isMesh ? screenUV : uv()
+  /** Place of a fragment in the picture. */
+  protected get place(): Vec2 {
+    return uv()
   }
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
     const ray = this.#rayTo(end)
-    const { front, beyond, tolerance } = this.#seenAt(
-      this.#place,
-      end.distance,
-      true,
-      transmittance
-    )
-    const lost = this.grid.read(this.#place, beyond, tolerance, (nearer, most) => {
+    const { front, beyond, tolerance } = this.#seenAt(this.place, end.distance, true, transmittance)
+    const lost = this.grid.read(this.place, beyond, tolerance, (nearer, most) => {
       front?.distance.assign(front.distance.mul(nearer).min(most))
       const to = ray.distance.min(most).toConst()
       return seenLight(to, front, this.#lightOn(ray), 1 - CLEAR).seen
     })
-    return lost.mul(this.#gain.mul(this.#strength))
+    return lost.mul(this.#gain.mul(this.strength))
   }
 
   /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
   get #isDrawnByForeground(): boolean {
-    const { screens, isForward } = this.#shafts
+    const { screens, isForward } = this.shafts
     return this.foreground === undefined && screens.hasForeground && !(this.isMesh && isForward)
   }
 
   dim(color: Vec3, transmittance?: Float): Vec3 {
     const left = color.toVar()
     if (this.#isDrawnByForeground) return left
-    If(this.#strength.greaterThan(0), () => {
+    If(this.strength.greaterThan(0), () => {
       const lost = Fn(({ renderer }): Vec3 =>
-        this.#lostUpTo(this.#endIn(renderer, this.#place), transmittance)
+        this.#lostUpTo(this.#endIn(renderer, this.place), transmittance)
       )()
       // Clouds may also give light.
       left.subAssign(lost.min(left))
@@ -260,7 +177,7 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Light that the ray of a pixel of the grid loses. */
   #march(renderer: Renderer, at: Vec2, pixel: Vec2): LostLight {
-    const { view, shadowedAir, steps } = this.#shafts
+    const { view, shadowedAir, steps } = this.shafts
     const ray = this.#rayTo(this.#endIn(renderer, at))
     const { distance } = ray
     const { front, beyond } = this.#seenAt(at, distance, false)
@@ -279,16 +196,19 @@ export class ScreenShafts implements ScreenShadows {
     return { lost: this.#color(lost), lit, all, distance, beyond }
   }
 
+  /** Position of what was drawn, or in front of the sky, in view space [world units]. */
+  protected seenIn(renderer: Renderer, at: Vec2): { position: Vec3; isSky: Bool } {
+    return this.rays.at(renderer, at)
+  }
+
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
   #endIn(renderer: Renderer, at: Vec2): RayEnd {
-    const { position, isSky } = this.isMesh
-      ? { position: this.#rays.position(renderer, at, float(0.5)), isSky: bool(true) as Bool }
-      : this.#rays.at(renderer, at)
+    const { position, isSky } = this.seenIn(renderer, at)
     return this.#endAt(position, isSky)
   }
 
   #endAt(position: Vec3, isSky: Bool): RayEnd {
-    const { view } = this.#shafts
+    const { view } = this.shafts
     const offset = view.toMapped(position).toConst() as Vec3
     const length = offset.length().max(1e-3).toConst() as Float
     const distance = length.toVar() as Float
@@ -300,7 +220,7 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   #rayTo({ offset, length, distance }: RayEnd): ShaftRay {
-    const { up, lightDirection } = this.#shafts.view
+    const { up, lightDirection } = this.shafts.view
     const direction = offset.div(length).toConst() as Vec3
     const cosView = direction.dot(up).clamp(-1, 1).toConst() as Float
     const cosViewLight = direction.dot(lightDirection).toConst() as Float
@@ -309,7 +229,7 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Light for unit irradiance [1/sr] as the grid keeps it. */
   #color(light: Vec4): Vec3 {
-    const { air, source } = this.#shafts.view
+    const { air, source } = this.shafts.view
     return unclampedSRGB(air.uniforms, light.mul(source.irradiance)).div(this.#gain).toConst()
   }
 
@@ -320,13 +240,13 @@ export class ScreenShafts implements ScreenShadows {
 
   #litAir(ray: ShaftRay): Vec3 {
     const { cosView, cosViewLight, distance } = ray
-    const { air, volume, viewpoint } = this.#shafts.view
+    const { air, volume, viewpoint } = this.shafts.view
     const limits = rayLimits(viewpoint, cosView)
     const at = [cosView, cosViewLight, limits, distance] as const
     const { radiance } = sampleVolume(air.uniforms, volume, viewpoint, ...at)
     const light = radiance.toVar()
     If(this.#hasMedia.greaterThan(0), () => {
-      const media = this.#shafts.shadowedAir.mediaOn({ view: this.#shafts.view, ...ray })
+      const media = this.shafts.shadowedAir.mediaOn({ view: this.shafts.view, ...ray })
       for (const { transmittance, singleScattered } of media) {
         light.assign(light.mul(transmittance).add(singleScattered))
       }
@@ -336,7 +256,7 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Takes them out of the shafts of their camera, until they are drawn again. */
   dispose(): void {
-    this.#shafts.screens.delete(this)
+    this.shafts.screens.delete(this)
     this.free()
   }
 
