@@ -1,7 +1,7 @@
-import { If, bool, float, mix, screenCoordinate, screenUV, vec4 } from 'three/tsl'
+import { If, float, mix, screenCoordinate, vec4 } from 'three/tsl'
 import type { NodeFrame, NodeMaterial, Renderer } from 'three/webgpu'
 import { scatterSegment } from '../scattering/tsl/segment'
-import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import { loop, type Float, type Vec3, type Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { MeshShadows } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -20,6 +20,7 @@ const MAX_MESH_HEIGHT = 20
 
 /** Light shafts in the picture of a mesh of air, whose rays end at the planet or nowhere. */
 export class MeshShafts extends ScreenShafts implements MeshShadows {
+  readonly #shafts: CameraShafts
   /** Material that marches these shadows, and version of the shafts that it was compiled for. */
   #material: NodeMaterial | undefined
   #compiled = 0
@@ -28,29 +29,31 @@ export class MeshShafts extends ScreenShafts implements MeshShadows {
 
   constructor(shafts: CameraShafts) {
     super(shafts, float(0.5), undefined, true)
+    this.#shafts = shafts
   }
 
   compileWith(material: NodeMaterial): void {
     const key = material.customProgramCacheKey.bind(material)
-    material.customProgramCacheKey = () => key() + String(this.shafts.version)
+    material.customProgramCacheKey = () => key() + String(this.#shafts.version)
     this.#material = material
-    this.#compiled = this.shafts.version
+    this.#compiled = this.#shafts.version
   }
 
   override prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
     super.prepareShadows(renderer, view, frame)
-    const { version } = this.shafts
+    const { version } = this.#shafts
     if (this.#material === undefined || this.#compiled === version) return
     this.#compiled = version
     this.#material.needsUpdate = true
   }
 
   prepareMesh(frame: NodeFrame, sun: object, isMarched: boolean): void {
-    const { view, camera, strengthNow } = this.shafts
+    const { view, camera, strengthNow } = this.#shafts
     const { atmosphere, source } = view
     const isTheirs = frame.camera === camera && sun === atmosphere && source === atmosphere.sun
     const seen = isTheirs ? view.prepare(frame) : undefined
-    this.strength.value = this.#marchedStrength.value = 0
+    this.hide()
+    this.#marchedStrength.value = 0
     if (seen === undefined) return
     const { bottomRadius } = atmosphere.parameters
     if (isMarched && seen.height < MAX_MESH_HEIGHT * bottomRadius) {
@@ -64,8 +67,8 @@ export class MeshShafts extends ScreenShafts implements MeshShadows {
 
   scatterAlong(entry: Float): typeof scatterSegment {
     const { direction, origin } = screenRay()
-    const start = this.shafts.view.toMapped(origin).toConst() as Vec3
-    const along = this.shafts.view.toMapped(direction).normalize().toConst() as Vec3
+    const start = this.#shafts.view.toMapped(origin).toConst() as Vec3
+    const along = this.#shafts.view.toMapped(direction).normalize().toConst() as Vec3
     const offsetAt = (distance: Float): Vec3 => start.add(along.mul(entry.add(distance)))
     return (air, ray, from, to) => {
       const { direct, diffuse } = this.#arriving(offsetAt(from), offsetAt(to))
@@ -85,7 +88,7 @@ export class MeshShafts extends ScreenShafts implements MeshShadows {
 
   /** Parts of the light that arrive between two points, by their offsets [m]: straight from the source, and scattered before. */
   #arriving(start: Vec3, end: Vec3): { direct: Float; diffuse: Vec4 } {
-    const { view, shadowedAir } = this.shafts
+    const { view, shadowedAir } = this.#shafts
     const strength = this.#marchedStrength
     const direct = float(1).toVar() as Float
     const diffuse = vec4(1).toVar() as Vec4
@@ -106,17 +109,5 @@ export class MeshShafts extends ScreenShafts implements MeshShadows {
       })
     })
     return { direct, diffuse }
-  }
-
-  /** Place of a fragment in the picture: meshes have coordinates of their own. */
-  protected override get place(): Vec2 {
-    return screenUV as unknown as Vec2
-  }
-
-  protected override seenIn(renderer: Renderer, at: Vec2): { position: Vec3; isSky: Bool } {
-    return {
-      position: this.rays.position(renderer, at, float(0.5)),
-      isSky: bool(true) as Bool
-    }
   }
 }

@@ -1,5 +1,5 @@
 import { Vector2 } from 'three'
-import { Fn, If, float, mix, uv, vec3 } from 'three/tsl'
+import { Fn, If, bool, float, mix, screenUV, uv, vec3 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
@@ -50,19 +50,19 @@ const _size = new Vector2()
  */
 export class ScreenShafts implements ScreenShadows {
   readonly foreground: ForegroundLayer | undefined
-  protected readonly shafts: CameraShafts
-  protected readonly rays: DepthRays
+  readonly #shafts: CameraShafts
+  readonly #rays: DepthRays
   readonly grid = new LostLightGrid()
   /** 1 if there is a medium, such as fog, in the light of the shafts. */
   readonly #hasMedia = number()
   /** `strengthNow`; 0 while the node of a foreground layer draws the shafts. */
-  protected readonly strength = number()
+  readonly #strength = number()
   /** 1 if what is behind the foreground has shafts already. */
   readonly #isForward = number()
   /** Output per lost light of which the grid keeps parts: half floats hold the moon's, too. */
   readonly #gain = number(1)
 
-  /** @param isMesh - True for a mesh of air. */
+  /** @param isMesh - True for a mesh of air, whose rays end at the planet or nowhere. */
   constructor(
     shafts: CameraShafts,
     depthNode: Node,
@@ -70,12 +70,12 @@ export class ScreenShafts implements ScreenShadows {
     readonly isMesh = false
   ) {
     this.foreground = foreground
-    this.shafts = shafts
-    this.rays = new DepthRays(depthNode, shafts.camera)
+    this.#shafts = shafts
+    this.#rays = new DepthRays(depthNode, shafts.camera)
   }
 
   prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
-    const shafts = this.shafts
+    const shafts = this.#shafts
     // Anew, after a dispose.
     shafts.screens.add(this)
     shafts.prepare(renderer, view, frame)
@@ -84,7 +84,7 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
-    const shafts = this.shafts
+    const shafts = this.#shafts
     shafts.screens.add(this)
     if (this.#isDrawnByForeground) return
     if (this.foreground === undefined) shafts.prepare(renderer, view, frame)
@@ -108,48 +108,58 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   update(view: AtmosphereView): void {
-    this.shafts.update(view)
-    this.strength.value = this.#isDrawnByForeground ? 0 : this.shafts.strengthNow.value
-    this.#isForward.value = Number(this.shafts.isForward)
+    this.#shafts.update(view)
+    this.#strength.value = this.#isDrawnByForeground ? 0 : this.#shafts.strengthNow.value
+    this.#isForward.value = Number(this.#shafts.isForward)
+  }
+
+  /** Draws none until the next {@link update}. */
+  protected hide(): void {
+    this.#strength.value = 0
   }
 
   lostAt(position: Vec3, isSky: Bool): Vec3 | undefined {
     if (this.#isDrawnByForeground) return undefined
     const lost = vec3(0).toVar()
-    If(this.strength.greaterThan(0), () => {
+    If(this.#strength.greaterThan(0), () => {
       lost.assign(this.#lostUpTo(this.#endAt(position, isSky)))
     })
     return lost
   }
 
-  /** Place of a fragment in the picture. */
-  protected get place(): Vec2 {
-    return uv()
+  /** Place of a fragment in the picture: meshes have coordinates of their own. */
+  get #place(): Vec2 {
+    return this.isMesh ? screenUV : uv()
   }
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
     const ray = this.#rayTo(end)
-    const { front, beyond, tolerance } = this.#seenAt(this.place, end.distance, true, transmittance)
-    const lost = this.grid.read(this.place, beyond, tolerance, (nearer, most) => {
+    const { front, beyond, tolerance } = this.#seenAt(
+      this.#place,
+      end.distance,
+      true,
+      transmittance
+    )
+    const lost = this.grid.read(this.#place, beyond, tolerance, (nearer, most) => {
       front?.distance.assign(front.distance.mul(nearer).min(most))
       const to = ray.distance.min(most).toConst()
       return seenLight(to, front, this.#lightOn(ray), 1 - CLEAR).seen
     })
-    return lost.mul(this.#gain.mul(this.strength))
+    return lost.mul(this.#gain.mul(this.#strength))
   }
 
   /** True if the node of a foreground layer draws the shafts, so that this one has no part in its shader. */
   get #isDrawnByForeground(): boolean {
-    const { screens, isForward } = this.shafts
+    const { screens, isForward } = this.#shafts
     return this.foreground === undefined && screens.hasForeground && !(this.isMesh && isForward)
   }
 
   dim(color: Vec3, transmittance?: Float): Vec3 {
     const left = color.toVar()
     if (this.#isDrawnByForeground) return left
-    If(this.strength.greaterThan(0), () => {
+    If(this.#strength.greaterThan(0), () => {
       const lost = Fn(({ renderer }): Vec3 =>
-        this.#lostUpTo(this.#endIn(renderer, this.place), transmittance)
+        this.#lostUpTo(this.#endIn(renderer, this.#place), transmittance)
       )()
       // Clouds may also give light.
       left.subAssign(lost.min(left))
@@ -177,7 +187,7 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Light that the ray of a pixel of the grid loses. */
   #march(renderer: Renderer, at: Vec2, pixel: Vec2): LostLight {
-    const { view, shadowedAir, steps } = this.shafts
+    const { view, shadowedAir, steps } = this.#shafts
     const ray = this.#rayTo(this.#endIn(renderer, at))
     const { distance } = ray
     const { front, beyond } = this.#seenAt(at, distance, false)
@@ -196,19 +206,16 @@ export class ScreenShafts implements ScreenShadows {
     return { lost: this.#color(lost), lit, all, distance, beyond }
   }
 
-  /** Position of what was drawn, or in front of the sky, in view space [world units]. */
-  protected seenIn(renderer: Renderer, at: Vec2): { position: Vec3; isSky: Bool } {
-    return this.rays.at(renderer, at)
-  }
-
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
   #endIn(renderer: Renderer, at: Vec2): RayEnd {
-    const { position, isSky } = this.seenIn(renderer, at)
+    const { position, isSky } = this.isMesh
+      ? { position: this.#rays.position(renderer, at, float(0.5)), isSky: bool(true) as Bool }
+      : this.#rays.at(renderer, at)
     return this.#endAt(position, isSky)
   }
 
   #endAt(position: Vec3, isSky: Bool): RayEnd {
-    const { view } = this.shafts
+    const { view } = this.#shafts
     const offset = view.toMapped(position).toConst() as Vec3
     const length = offset.length().max(1e-3).toConst() as Float
     const distance = length.toVar() as Float
@@ -220,7 +227,7 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   #rayTo({ offset, length, distance }: RayEnd): ShaftRay {
-    const { up, lightDirection } = this.shafts.view
+    const { up, lightDirection } = this.#shafts.view
     const direction = offset.div(length).toConst() as Vec3
     const cosView = direction.dot(up).clamp(-1, 1).toConst() as Float
     const cosViewLight = direction.dot(lightDirection).toConst() as Float
@@ -229,7 +236,7 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Light for unit irradiance [1/sr] as the grid keeps it. */
   #color(light: Vec4): Vec3 {
-    const { air, source } = this.shafts.view
+    const { air, source } = this.#shafts.view
     return unclampedSRGB(air.uniforms, light.mul(source.irradiance)).div(this.#gain).toConst()
   }
 
@@ -240,13 +247,13 @@ export class ScreenShafts implements ScreenShadows {
 
   #litAir(ray: ShaftRay): Vec3 {
     const { cosView, cosViewLight, distance } = ray
-    const { air, volume, viewpoint } = this.shafts.view
+    const { air, volume, viewpoint } = this.#shafts.view
     const limits = rayLimits(viewpoint, cosView)
     const at = [cosView, cosViewLight, limits, distance] as const
     const { radiance } = sampleVolume(air.uniforms, volume, viewpoint, ...at)
     const light = radiance.toVar()
     If(this.#hasMedia.greaterThan(0), () => {
-      const media = this.shafts.shadowedAir.mediaOn({ view: this.shafts.view, ...ray })
+      const media = this.#shafts.shadowedAir.mediaOn({ view: this.#shafts.view, ...ray })
       for (const { transmittance, singleScattered } of media) {
         light.assign(light.mul(transmittance).add(singleScattered))
       }
@@ -256,7 +263,7 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Takes them out of the shafts of their camera, until they are drawn again. */
   dispose(): void {
-    this.shafts.screens.delete(this)
+    this.#shafts.screens.delete(this)
     this.free()
   }
 
