@@ -110,7 +110,11 @@ function city(
     const cloudsNode = withClouds
       ? clouds(air, depth, camera, atmosphere, layers, { quality: 'medium', ...shared })
       : undefined
-    if (cloudsNode) shafts?.add(cloudAirShadow(cloudsNode))
+    if (cloudsNode) {
+      // As clouds drift, maps of them are drawn anew in some frames and not in others.
+      cloudsNode.time = 0
+      shafts?.add(cloudAirShadow(cloudsNode))
+    }
     pipeline.outputNode = cloudsNode ?? air
   }
   const target = new RenderTarget(size[0], size[1], { type: HalfFloatType })
