@@ -7,7 +7,6 @@ import {
   lightShafts,
   skyBackground,
   SunDirectionalLight,
-  type ForwardShafts,
   type LightShaftsQuality
 } from '@welkin/atmosphere'
 import { cloudAirShadow, CloudLightTable, CloudNoise, cloudPreset, clouds } from '@welkin/clouds'
@@ -100,7 +99,7 @@ function city(
   const scenePass = pass(scene, camera, { samples: 0 })
   const pipeline = new RenderPipeline(renderer)
   if (isForward) {
-    if (shafts) atmosphere.add(shafts as ForwardShafts)
+    if (shafts) atmosphere.add(shafts)
     scene.backgroundNode = skyBackground(atmosphere)
     scene.fogNode = aerialPerspectiveFog(atmosphere)
   } else {

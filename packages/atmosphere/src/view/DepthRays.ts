@@ -44,11 +44,9 @@ export class DepthRays {
     const isSky = isBackgroundDepth(depth).toConst() as Bool
     const { isOrthographicCamera } = this.camera as OrthographicCamera
     // Both, as nodes that draw air compute them: compilers take them for the same.
-    const [ahead, drawn] = [float(0.5), depth].map(each =>
-      this.position(renderer, at, each as Float)
-    )
+    const [ahead, drawn] = [float(0.5), depth].map(each => this.position(renderer, at, each))
     const ray = isOrthographicCamera ? (vec3(0, 0, -1) as unknown as Vec3) : ahead
-    return { position: isSky.select(ray, drawn).toConst() as Vec3, isSky }
+    return { position: isSky.select(ray, drawn).toConst(), isSky }
   }
 
   /** Position of a depth at a place of the picture, in view space [world units]. */
