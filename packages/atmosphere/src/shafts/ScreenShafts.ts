@@ -133,7 +133,6 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
-    const ray = this.#rayTo(end)
     const { front, beyond, tolerance } = this.#seenAt(
       this.#place,
       end.distance,
@@ -141,6 +140,7 @@ export class ScreenShafts implements ScreenShadows {
       transmittance
     )
     const lost = this.grid.read(this.#place, beyond, tolerance, (nearer, most) => {
+      const ray = this.#rayTo(end)
       front?.distance.assign(front.distance.mul(nearer).min(most))
       const to = ray.distance.min(most).toConst()
       return seenLight(to, front, this.#lightOn(ray), 1 - CLEAR).seen

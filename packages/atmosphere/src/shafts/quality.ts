@@ -25,11 +25,11 @@ export const qualities = {
   },
   medium: {
     rows: 960,
-    columns: 240,
-    spacing: 6,
+    columns: 200,
+    spacing: 7,
     groups: 3,
     samples: 3,
-    inFog: 14
+    inFog: 20
   },
   high: {
     rows: 1024,
