@@ -3,6 +3,7 @@ import {
   aerialPerspectiveFog,
   Atmosphere,
   heightFog,
+  forwardShafts,
   lightShafts,
   skyBackground,
   SunDirectionalLight,
@@ -92,10 +93,12 @@ function city(
     Object.assign(light.shadow, { shadowNode })
   }
   scene.add(light, light.target)
-  const shafts = quality === null ? undefined : lightShafts(atmosphere, camera, light, { quality })
+  const isForward = path === 'forward'
+  const make = isForward ? forwardShafts : lightShafts
+  const shafts = quality === null ? undefined : make(atmosphere, camera, light, { quality })
   const scenePass = pass(scene, camera, { samples: 0 })
   const pipeline = new RenderPipeline(renderer)
-  if (path === 'forward') {
+  if (isForward) {
     if (shafts) atmosphere.add(shafts)
     scene.backgroundNode = skyBackground(atmosphere)
     scene.fogNode = aerialPerspectiveFog(atmosphere)
@@ -106,7 +109,11 @@ function city(
     const cloudsNode = withClouds
       ? clouds(air, depth, camera, atmosphere, layers, { quality: 'medium', ...shared })
       : undefined
-    if (cloudsNode) shafts?.add(cloudAirShadow(cloudsNode))
+    if (cloudsNode) {
+      // As clouds drift, maps of them are drawn anew in some frames and not in others.
+      cloudsNode.time = 0
+      shafts?.add(cloudAirShadow(cloudsNode))
+    }
     pipeline.outputNode = cloudsNode ?? air
   }
   const target = new RenderTarget(size[0], size[1], { type: HalfFloatType })
@@ -114,7 +121,7 @@ function city(
     draw: () => {
       nextFrame()
       renderer.setRenderTarget(target)
-      if (path === 'forward') renderer.render(scene, camera)
+      if (isForward) renderer.render(scene, camera)
       else pipeline.render()
       renderer.setRenderTarget(null)
     },

@@ -13,7 +13,7 @@ import {
   droplets,
   heightFog,
   iceCrystals,
-  lightShafts,
+  forwardShafts,
   milkyWay,
   moon,
   planetGround,
@@ -25,7 +25,7 @@ import {
   starsOverlay,
   sunFlare
 } from '@welkin/atmosphere'
-import type { AutoExposureNode, LightShafts } from '@welkin/atmosphere'
+import type { AutoExposureNode, ForwardShafts } from '@welkin/atmosphere'
 import {
   DropletLightTable,
   precipitationShafts,
@@ -109,7 +109,7 @@ class World {
   readonly #pipeline: RenderPipeline
   readonly #sun: SunDirectionalLight
   readonly #lit = new MeshStandardMaterial({ name: LIT, emissive: 0x010101 })
-  readonly shafts: LightShafts
+  readonly shafts: ForwardShafts
   readonly exposure: AutoExposureNode
   readonly #clouds
   readonly #cloudEnvironment
@@ -146,7 +146,7 @@ class World {
     )
     const depth = this.#pass.getTextureNode('depth')
     const light = (this.#sun = new SunDirectionalLight(atmosphere, 200))
-    const shafts = (this.shafts = lightShafts(atmosphere, camera, light, { quality: 'low' }))
+    const shafts = (this.shafts = forwardShafts(atmosphere, camera, light, { quality: 'low' }))
     const drawn = this.#pass.getTextureNode()
     const air = aerialPerspective(drawn, depth, camera, atmosphere, { shafts })
     const layers = cloudPreset('mixed', 4)

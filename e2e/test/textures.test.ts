@@ -9,6 +9,7 @@ import {
   airStyle,
   distanceFog,
   droplets,
+  forwardShafts,
   heightFieldShadow,
   heightFog,
   iceCrystals,
@@ -213,7 +214,7 @@ it('light of surfaces and shafts sample as many textures as the README says', as
       scene.fogNode = aerialPerspectiveFog(atmosphere)
       scene.backgroundNode = skyBackground(atmosphere)
       sun.castShadow = true
-      if (casters > 0) atmosphere.add(lightShafts(atmosphere, camera, sun))
+      if (casters > 0) atmosphere.add(forwardShafts(atmosphere, camera, sun))
       const { layers } = atmosphere
       if (casters > 1) (layers[0] as LightShafts).add(heightFieldShadow(picture(), new Matrix4()))
       return () => renderer.render(scene, camera)
@@ -248,7 +249,7 @@ it('features of the clouds sample as many textures as their README says', async 
       const node = world.clouds()
       Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
       const occluder = cloudAirShadow(node)
-      const shafts = lightShafts(atmosphere, camera, sun).add(occluder)
+      const shafts = forwardShafts(atmosphere, camera, sun).add(occluder)
       const { target } = node.shadows
       expect(target.height).toBe(256)
       if (!hasShafts) return

@@ -3,7 +3,7 @@ import {
   Atmosphere,
   AtmosphereParameters,
   AtmosphereShell,
-  lightShafts,
+  forwardShafts,
   SunDirectionalLight,
   type AirOccluder
 } from '@welkin/atmosphere'
@@ -103,7 +103,7 @@ gpuTest('has the same shafts in world units of a kilometre and in ECEF axes', as
 
 /** A camera's own pipeline of the stage's scene, with shafts. */
 function second({ scene, atmosphere, light }: Stage, renderer: WebGPURenderer, camera: Camera) {
-  const shafts = lightShafts(atmosphere, camera, light)
+  const shafts = forwardShafts(atmosphere, camera, light)
   const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
   const pipeline = new RenderPipeline(renderer)
   pipeline.outputColorTransform = false
@@ -263,7 +263,7 @@ gpuTest('takes from the air of a shell what it takes from the sky', async t => {
   const views = t.backend === 'webgpu' ? VIEWS : [VIEWS[0], VIEWS[2]]
   for (const [distance, pitch] of views) {
     const camera = cameraAt(distance, air.bottomRadius, pitch)
-    const shafts = lightShafts(atmosphere, camera, light).add(occluder)
+    const shafts = forwardShafts(atmosphere, camera, light).add(occluder)
     const sky = new Scene()
     const scenePass = pass(sky, camera, { samples: 0, type: FloatType })
     const pipeline = new RenderPipeline(renderer)
@@ -324,7 +324,7 @@ gpuTest(
     camera.position.set(0, 0, radius + 500_000)
     camera.rotation.x = 0.6
     camera.updateMatrixWorld()
-    const shafts = lightShafts(atmosphere, camera, light)
+    const shafts = forwardShafts(atmosphere, camera, light)
     const shell = new AtmosphereShell(air, radius, { shafts })
     const scene = new Scene().add(shell)
     const draw = async (occluder?: AirOccluder): Promise<Picture> => {

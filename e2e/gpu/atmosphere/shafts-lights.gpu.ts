@@ -2,12 +2,12 @@ import {
   aerialPerspective,
   aerialPerspectiveFog,
   AtmosphereShell,
-  lightShafts,
+  forwardShafts,
   moon,
   MoonDirectionalLight,
   skyBackground,
   type AirOccluder,
-  type LightShafts,
+  type ForwardShafts,
   type LightShaftsQuality
 } from '@welkin/atmosphere'
 import { FloatType, Scene } from 'three'
@@ -35,7 +35,7 @@ gpuTest('draws the shafts of sun and moon in one post effect, each by its light'
   moonlight.castShadow = true
   moonlight.shadow.copy(light.shadow)
   scene.add(moonlight, moonlight.target)
-  const shafts = [light, moonlight].map(each => lightShafts(atmosphere, camera, each))
+  const shafts = [light, moonlight].map(each => forwardShafts(atmosphere, camera, each))
   const [ofSun, ofMoon] = shafts
   const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
   const [color, depth] = [scenePass.getTextureNode(), scenePass.getTextureNode('depth')]
@@ -157,7 +157,7 @@ gpuTest('has materials draw two cameras in a frame as they draw each alone', asy
   other.position.set(-200, 60, 100)
   other.lookAt(0, 300, -600)
   const cameras = [set.camera, other]
-  const shafts: LightShafts[] = [set.shafts, lightShafts(atmosphere, other, light)]
+  const shafts: ForwardShafts[] = [set.shafts, forwardShafts(atmosphere, other, light)]
   atmosphere.add(...shafts)
   scene.backgroundNode = skyBackground(atmosphere)
   scene.fogNode = aerialPerspectiveFog(atmosphere)

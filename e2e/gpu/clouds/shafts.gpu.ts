@@ -15,7 +15,8 @@ import {
   marchedLoss,
   measuredLoss,
   radians,
-  unseenClouds
+  unseenClouds,
+  type North
 } from '../harness/cloud-shafts'
 import { drawForward, drawToFloat } from '../harness/atmosphere'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
@@ -41,6 +42,18 @@ const decks: [string, (north: Float) => Float, (north: number) => boolean][] = [
   ]
 ]
 
+/** Dark part of the air at distances on a ray that begins at an altitude [m], under a deck with clear parts. */
+const darkUnder =
+  (isClear: (north: number) => boolean, { view, sun }: North, start: number) =>
+  (distance: number): number => {
+    const altitude = start + distance * Math.sin(radians(view)) + distance ** 2 / 12.8e6
+    if (altitude > deck.topAltitude) return 0
+    const from = Math.max(altitude, deck.baseAltitude)
+    const at = (height: number): number =>
+      distance * Math.cos(radians(view)) + (height - altitude) / Math.tan(radians(sun))
+    return isClear(at(from)) && isClear(at(deck.topAltitude)) ? 0 : 1
+  }
+
 for (const [name, extinction, isClear] of decks) {
   gpuTest(
     `takes the light from air under ${name}`,
@@ -63,15 +76,7 @@ for (const [name, extinction, isClear] of decks) {
         lookAt(set, view)
         await draw()
         const north = { view, sun }
-        const darkAt = (distance: number): number => {
-          const altitude = 2 + distance * Math.sin(radians(view)) + distance ** 2 / 12.8e6
-          if (altitude > deck.topAltitude) return 0
-          const from = Math.max(altitude, deck.baseAltitude)
-          const at = (height: number): number =>
-            distance * Math.cos(radians(view)) + (height - altitude) / Math.tan(radians(sun))
-          return isClear(at(from)) && isClear(at(deck.topAltitude)) ? 0 : 1
-        }
-        const { whole, lost } = marchedLoss(north, Infinity, darkAt)
+        const { whole, lost } = marchedLoss(north, Infinity, darkUnder(isClear, north, 2))
         const got = await measuredLoss(set)
         for (let k = 0; k < 3; k++) {
           t.note(
@@ -92,6 +97,60 @@ for (const [name, extinction, isClear] of decks) {
     { backends: name.startsWith('a slit') ? ['webgpu', 'webgl'] : ['webgpu'], timeoutSeconds: 180 }
   )
 }
+
+/** Middle and half width of a gap in a deck, north of the eye [m]. */
+const gap = { middle: 300, half: 400 }
+
+/**
+ * Altitudes of eyes above that gap or in it [m], and views of the air below. Long ones: shadows of a deck this thick are wider than it by up to a
+ * texel of the clouds' map, 39 m.
+ */
+const eyes = [
+  { altitude: 1550, views: [-15, -165] },
+  { altitude: 10_000, views: [-84, -95] }
+]
+
+gpuTest(
+  'takes the light from air under a deck as seen from among its clouds and from 10 km',
+  async t => {
+    const sun = 40
+    const renderer = await t.createRenderer(size)
+    const set = stage(renderer, sun, { quality: 'reference' })
+    const { node, draw, dispose } = await unseenClouds(
+      renderer,
+      set,
+      new CloudLayers([deck]),
+      new SparseNoise(),
+      ({ offset }) => offset.z.sub(gap.middle).abs().greaterThan(gap.half).select(0.5, 0)
+    )
+    set.shafts.add(castsOnce(node))
+    const isClear = (north: number): boolean => Math.abs(north - gap.middle) <= gap.half
+    for (const { altitude, views } of eyes) {
+      set.camera.position.y = altitude
+      const parts: number[] = []
+      for (const view of views) {
+        lookAt(set, view)
+        await draw()
+        const north = { view, sun }
+        const ground = altitude / Math.sin(radians(-view))
+        const darkAt = darkUnder(isClear, north, altitude)
+        const { whole, lost } = marchedLoss(north, ground, darkAt, altitude)
+        const got = await measuredLoss(set)
+        parts.push(lost[1] / whole[1])
+        t.note(
+          `${altitude} m, ${view}°: lost ${parts.at(-1)!.toFixed(4)}, got ${(got[1] / whole[1]).toFixed(4)}`
+        )
+        for (let k = 0; k < 3; k++) {
+          expectClose(got[k], lost[k], { absolute: 0.012 * whole[k] }, `view ${view}°, #${k}`)
+        }
+      }
+      expectTrue(Math.abs(parts[0] - parts[1]) > 0.03, `${altitude} m: ${parts.join()} is lost`)
+    }
+    dispose()
+    set.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest(
   'takes the light from air under broken clouds as a dense march through them does',

@@ -77,7 +77,6 @@ export async function unseenClouds(
 ): Promise<{ node: CloudsNode; draw: () => Promise<void>; dispose: () => void }> {
   const light = new CloudLightTable()
   const camera = new PerspectiveCamera(60, 2, 1, 1e6)
-  camera.position.copy(position)
   const node = clouds(vec4(0), float(1), camera, atmosphere, layers, {
     quality: coarse,
     noise,
@@ -91,6 +90,7 @@ export async function unseenClouds(
   return {
     node,
     async draw() {
+      camera.position.copy(position)
       camera.updateMatrixWorld()
       await nextFrame()
       await drawToFloat(renderer, () => pipeline.render())

@@ -2,11 +2,11 @@ import {
   aerialPerspective,
   Atmosphere,
   AtmosphereParameters,
-  lightShafts,
+  forwardShafts,
   moon,
   MoonDirectionalLight,
   SunDirectionalLight,
-  type LightShafts,
+  type ForwardShafts,
   type LightShaftsOptions,
   type SpectralMatrix
 } from '@welkin/atmosphere'
@@ -47,7 +47,7 @@ export interface Stage {
   camera: PerspectiveCamera
   atmosphere: Atmosphere
   light: SunDirectionalLight
-  shafts: LightShafts
+  shafts: ForwardShafts
   pipeline: RenderPipeline
   /** The picture with shafts as a node, and its depth. */
   air: Node
@@ -91,7 +91,7 @@ export function stage(
   scene.add(light, light.target, receiver)
   const camera = new PerspectiveCamera(60, stageSize.width / stageSize.height, 1, 1e6)
   camera.position.y = 2
-  const shafts = lightShafts(atmosphere, camera, light, options ?? {})
+  const shafts = forwardShafts(atmosphere, camera, light, options ?? {})
   const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
   const pipeline = new RenderPipeline(renderer)
   pipeline.outputColorTransform = false

@@ -2,7 +2,7 @@ import {
   aerialPerspectiveFog,
   Atmosphere,
   groundShadow,
-  lightShafts,
+  forwardShafts,
   skyBackground,
   SkyLightProbe,
   SunDirectionalLight,
@@ -65,7 +65,7 @@ gpuTest(
     Object.assign(sun.shadow, {
       shadowNode: cloudShadow(sky, terrainShadow(mountains, sun, cascades))
     })
-    atmosphere.add(lightShafts(atmosphere, camera, sun).add(mountains))
+    atmosphere.add(forwardShafts(atmosphere, camera, sun).add(mountains))
     const around = new DataTexture(new Uint8Array(4 * 8 * 4).fill(255), 8, 4)
     around.mapping = EquirectangularReflectionMapping
     around.needsUpdate = true

@@ -3,7 +3,7 @@ import {
   aerialPerspectiveFog,
   Atmosphere,
   AtmosphereParameters,
-  lightShafts,
+  forwardShafts,
   skyBackground,
   SunDirectionalLight,
   type AtmosphereParametersInit,
@@ -146,7 +146,7 @@ async function drawView(
   const scene = sceneOf(view, light)
   const camera = new PerspectiveCamera(ANGLE, 1, 1, 1e6)
   camera.position.set(...view.camera)
-  const shafts = lightShafts(atmosphere, camera, light, { quality })
+  const shafts = forwardShafts(atmosphere, camera, light, { quality })
   const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
   const pipeline = new RenderPipeline(renderer)
   pipeline.outputColorTransform = false

@@ -206,7 +206,7 @@ throwsEach('atmospheres, their parameters and nodes', [
     () => new AtmosphereShell(parameters, wrong({ radius: 1 }))
   ],
   [
-    'AtmosphereShell: shafts must be LightShafts of the sun, of these parameters, for tables, got 3',
+    'AtmosphereShell: shafts must be forwardShafts of the sun, of these parameters, for tables, got 3',
     () => new AtmosphereShell(new AtmosphereParameters(), 1, { shafts: wrong(3) })
   ],
   [

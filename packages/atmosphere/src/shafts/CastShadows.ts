@@ -1,7 +1,7 @@
 import type { Renderer } from 'three/webgpu'
 import { fail } from '@welkin/geo'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import type { AirOccluder, AirShadow, ShadowedShafts, SharedRows } from './AirOccluder'
+import type { AirOccluder, AirShadow, ShadowedShafts } from './AirOccluder'
 
 /** Shadows that were added to light shafts, by what casts them. */
 export class CastShadows {
@@ -34,14 +34,6 @@ export class CastShadows {
       this.#shadows.get(occluder)?.dispose?.()
       this.#shadows.delete(occluder)
     }
-  }
-
-  /** Room in the texture of the first that has any. */
-  makeRoom(): SharedRows | undefined {
-    return this.all.reduce<SharedRows | undefined>(
-      (room, shadow) => room ?? shadow.makeRoom?.(),
-      undefined
-    )
   }
 
   /** Frees what they have drawn. */

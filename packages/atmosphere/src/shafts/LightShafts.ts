@@ -1,17 +1,16 @@
 import { Matrix3, Matrix4 } from 'three'
-import type { Camera, OrthographicCamera } from 'three'
-import { screenCoordinate, vec4 } from 'three/tsl'
+import type { Camera } from 'three'
+import { vec4 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
-import { checkBoolean, checkChoice, checkNonNegative, fail, setOptions } from '@welkin/geo'
+import { checkBoolean, checkChoice, checkNonNegative, setOptions } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkCamera, checkShadowLight } from '../check'
 import type { Float } from '../tsl-types'
 import { matrix4, number } from '../uniforms'
-import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
+import type { AtmosphereView } from '../view/AtmosphereView'
 import type { AirPicture, ForegroundLayer, ScreenShadows } from '../view/AirShadows'
 import type { LightSource } from '../view/LightSource'
-import type { LayerRay, SkyLayer } from '../view/SkyLayer'
-import type { MediumSegment } from '../skyVolume/tsl/skyVolume'
+import type { SkyLayer } from '../view/SkyLayer'
 import { checkAtmosphere, viewNodes, type ViewNodes } from '../view/ViewNodes'
 import type { AirOccluder, AirViewRay, ShadowedShafts } from './AirOccluder'
 import { CastShadows } from './CastShadows'
@@ -20,12 +19,9 @@ import { checkPicture, ShaftScreens } from './ShaftScreens'
 import { claimShadow, drawShadow, releaseShadow, shadowMapsOf } from './shadowMaps'
 import type { ParallelLight } from './shadowMaps'
 import { qualities, qualityNames, type LightShaftsQuality } from './quality'
-import { ShaftVolume } from './ShaftVolume'
 import { SunPolarMap } from './SunPolarMap'
-import { isShadowed, mediaIn } from './tsl/lostInMedia'
-import { lostLight, staggered } from './tsl/lostLight'
+import { mediaIn } from './tsl/lostInMedia'
 import { litAt, type ShadowedAir } from './tsl/shadowsAlong'
-import { distanceOf, withoutLost } from './tsl/without'
 
 /** Options of {@link LightShafts}. */
 export interface LightShaftsOptions {
@@ -50,10 +46,8 @@ const _axes = new Matrix4()
  * const air = aerialPerspective(color, depth, camera, atmosphere, { shafts })
  * ```
  *
- * Materials that draw the air themselves, with `skyBackground` and `aerialPerspectiveFog`, have them once they are added to the
- * atmosphere: `atmosphere.add(shafts)`. Fogs that were added before have shafts, later ones none. Each fragment
- * reads a volume of 144 × 81 rays in 24 slices, which is drawn once a frame. Compile a scene before its first frame, which else has none in its sky:
- * `await renderer.compileAsync(scene, camera)`.
+ * These are for post effects, and for clouds. Materials that draw the air themselves, and meshes of air, have shafts by
+ * {@link ForwardShafts}, which are these and more.
  *
  * Shadows are those that three has drawn of the light in the same frame: of one map, of `CSMShadowNode`, or
  * of `SunLight`'s cascades; standard and reversed depth. Beyond them air is lit but for what was added. Air and fogs in
@@ -63,7 +57,7 @@ const _axes = new Matrix4()
  * Clouds, hills and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`, or a `heightFieldShadow`. They need no
  * shadow map of the light.
  *
- * Needs a texture of 1 MB, and 4 bytes a pixel of the picture (1 at `'low'` and `'medium'` quality), or 7 MB for materials, with clouds 9.
+ * Needs a texture of 1 MB, and 4 bytes a pixel of the picture (1 at `'low'` and `'medium'` quality).
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
  *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",
@@ -82,11 +76,9 @@ export class LightShafts implements ShadowedShafts {
   readonly view: ViewNodes
   /** Samples on a view ray. */
   readonly steps = { groups: number(), samples: number(), inFog: number() }
-  readonly #map = new SunPolarMap()
-  readonly #volume: ShaftVolume
+  protected readonly map = new SunPolarMap()
+  protected readonly shadows = new CastShadows()
   readonly shadowedAir: ShadowedAir
-  readonly #shadowedSky: ShadowedAir
-  readonly #shadows = new CastShadows()
   readonly #toWorld = matrix4()
   #version = 0
   /** Part of the light that air in shadow loses; 0 where shafts are off. */
@@ -120,10 +112,16 @@ export class LightShafts implements ShadowedShafts {
     this.light = light
     this.source = light.source ?? atmosphere.sun
     this.view = viewNodes(atmosphere, camera, this.source)
-    this.#volume = new ShaftVolume(camera)
-    const shadows = this.#shadows
-    const { map, frame, maximumRho, intensity } = this.#map
-    const shadowedIn = (media: () => SkyLayer[]): ShadowedAir => ({
+    this.shadowedAir = this.shadowedIn(() => this.media)
+    this.set(options)
+    claimShadow(light, this)
+  }
+
+  /** Shadows in the air, and in some media in it. */
+  protected shadowedIn(media: () => readonly SkyLayer[]): ShadowedAir {
+    const { shadows, source, atmosphere } = this
+    const { map, frame, maximumRho, intensity } = this.map
+    return {
       map,
       frame,
       maximumRho,
@@ -131,13 +129,9 @@ export class LightShafts implements ShadowedShafts {
       get shadows() {
         return shadows.all
       },
-      ...mediaIn(media, () => this.source === atmosphere.sun),
+      ...mediaIn(media, () => source === atmosphere.sun),
       toWorld: offset => this.#toWorld.mul(vec4(offset, 1)).xyz
-    })
-    this.shadowedAir = shadowedIn(() => this.#media)
-    this.#shadowedSky = shadowedIn(() => this.#media.filter(({ leavesSky }) => !leavesSky))
-    this.set(options)
-    claimShadow(light, this)
+    }
   }
 
   /**
@@ -158,22 +152,18 @@ export class LightShafts implements ShadowedShafts {
    * @throws If something is no occluder, is there already, or is of another atmosphere; then nothing is added.
    */
   add(...occluders: AirOccluder[]): this {
-    this.#shadows.add(this, occluders)
-    return this.#compileAnew()
+    this.shadows.add(this, occluders)
+    return this.compileAnew()
   }
 
   /** Takes out what was added; what was not is passed over. @returns These shafts. */
   remove(...occluders: AirOccluder[]): this {
-    this.#shadows.remove(occluders)
-    return this.#compileAnew()
+    this.shadows.remove(occluders)
+    return this.compileAnew()
   }
 
-  #compileAnew(): this {
+  protected compileAnew(): this {
     this.#version++
-    // Layers that come again have materials compiled anew: with those after it, each stays where it was.
-    const { atmosphere } = this
-    const after = this.#isLayer ? atmosphere.layers.slice(atmosphere.layers.indexOf(this)) : []
-    if (this.#isLayer) atmosphere.remove(...after).add(...after)
     return this
   }
 
@@ -187,16 +177,14 @@ export class LightShafts implements ShadowedShafts {
     this.#setStrength = value
   }
 
-  /** Fineness of the march. A change compiles nothing, but for materials at `'reference'` quality. */
+  /** Fineness of the march. A change compiles nothing. */
   get quality(): LightShaftsQuality {
     return this.#quality
   }
 
   set quality(value: LightShaftsQuality) {
     checkChoice('LightShafts', 'quality', value, qualityNames)
-    const wasMarched = this.#isMarched
     this.#quality = value
-    if (this.#isMarched !== wasMarched && this.#isLayer) this.#compileAnew()
   }
 
   /** False for air without shadows, at no cost. Nothing is compiled when it changes. */
@@ -228,31 +216,20 @@ export class LightShafts implements ShadowedShafts {
     return qualities[this.#quality].spacing
   }
 
-  upTo(depthNode: Node | null, foreground?: ForegroundLayer, picture?: AirPicture): ScreenShadows {
+  upTo(depthNode: Node, foreground?: ForegroundLayer, picture?: AirPicture): ScreenShadows {
     if (picture) checkPicture(picture, this)
     const screen = new ScreenShafts(this, depthNode, foreground)
     this.screens.add(screen)
     return screen
   }
 
-  /** True if materials draw the shafts themselves. */
   get isForward(): boolean {
-    return !this.screens.hasPostEffect && this.#isLayer
+    return false
   }
 
-  get #isLayer(): boolean {
-    return this.atmosphere.layers.includes(this)
-  }
-
-  /** Called before it is added. @throws If it is another atmosphere's. */
-  attach(atmosphere: ViewedAtmosphere): void {
-    if (atmosphere !== this.atmosphere)
-      fail('LightShafts', 'atmosphere must be that of its layers', atmosphere)
-    this.#volume.sums.room = this.#isMarched ? undefined : this.#shadows.makeRoom()
-  }
-
-  prepare(renderer: Renderer, { camera }: AtmosphereView, frame?: NodeFrame): void {
-    if (camera !== this.camera) return
+  /** @returns True if the shadows are drawn anew, not as those of the render before. */
+  prepare(renderer: Renderer, { camera }: AtmosphereView, frame?: NodeFrame): boolean {
+    if (camera !== this.camera) return false
     // Anew, after a dispose.
     claimShadow(this.light, this)
     const { atmosphere, source, steps } = this
@@ -263,74 +240,40 @@ export class LightShafts implements ShadowedShafts {
     if (isLit && frame && drawShadow(this.light, frame, camera)) {
       // Nodes of one render share the map.
       const render = `${frame.frameId} ${frame.renderId}`
-      if (render === this.#render && this.isActive) return
+      if (render === this.#render && this.isActive) return false
       this.#render = render
     }
     const maps = isLit ? shadowMapsOf(this.light) : []
-    this.#map.update(renderer, view!, atmosphere.space, maps, quality)
+    this.map.update(renderer, view!, atmosphere.space, maps, quality)
     this.#isActive = maps.length > 0
     if (isLit) this.#updateShadows(view, renderer)
     steps.groups.value = groups
     steps.samples.value = samples
     steps.inFog.value = inFog
-    this.#drawVolume(renderer, view)
-  }
-
-  /** Draws what materials read. */
-  #drawVolume(renderer: Renderer, view: AtmosphereView | undefined): void {
-    // While they are off, too: what has drawn with the textures in this frame must find them at its end.
-    const isUsed = this.#isLayer && !this.#isMarched
-    this.#volume.resize(renderer, isUsed ? qualities[this.#quality] : null)
-    if (!isUsed || !this.#isActive || view === undefined) return
-    this.view.update(view)
-    for (const layer of this.#media) if (isShadowed(layer)) layer.update?.(view)
-    const mapped = this.#shadows.all.length > 0 ? Infinity : this.#map.maximumRho.value
-    this.#volume.draw(renderer, this, this.#shadowedSky, mapped)
+    return true
   }
 
   #updateShadows(view: AtmosphereView, renderer: Renderer): void {
     this.atmosphere.space.displacement(_axes.identity(), _linear)
     this.#toWorld.value.setFromMatrix3(_linear.invert()).copyPosition(view.camera.matrixWorld)
-    if (this.#shadows.update(view, renderer)) this.#isActive = true
+    if (this.shadows.update(view, renderer)) this.#isActive = true
   }
 
   update({ camera }: AtmosphereView): void {
     this.strengthNow.value = this.isActive && camera === this.camera ? this.#setStrength : 0
   }
 
-  medium({ view, direction, cosView, ...to }: LayerRay, air: MediumSegment): MediumSegment {
-    const lit = viewNodes(this.atmosphere, view.camera, this.source)
-    const taken = lit.source.irradiance.mul(this.strengthNow)
-    return withoutLost(air, this.strengthNow, () => {
-      if (!this.#isMarched) {
-        return taken.mul(to.distance ? this.#volume.lostTo(to.distance) : this.#volume.lostToSky())
-      }
-      const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
-      const ray = { direction, cosView, cosViewLight, distance: distanceOf(to) }
-      const pixel = screenCoordinate.xy.floor()
-      return taken.mul(lostLight(lit, this.shadowedAir, ray, this.steps, staggered(pixel)))
-    })
-  }
-
-  /** Layers with shafts in their media: not what comes later, which dims what is left. */
-  get #media(): SkyLayer[] {
-    const { layers } = this.atmosphere
-    return layers.slice(0, this.#isLayer ? layers.indexOf(this) : layers.length)
-  }
-
-  /** True if each fragment marches: rays of orthographic cameras do not meet in the camera. */
-  get #isMarched(): boolean {
-    const { isOrthographicCamera } = this.camera as Partial<OrthographicCamera>
-    return qualities[this.#quality].rays === 0 || isOrthographicCamera === true
+  /** Layers with shafts in their media. */
+  protected get media(): readonly SkyLayer[] {
+    return this.atmosphere.layers
   }
 
   /** Frees its textures, and the slot of the light's shadow. It can be used again. What was added stays, and lends it no maps until then. */
   dispose(): void {
     this.#isActive = false
     releaseShadow(this.light, this)
-    this.#map.dispose()
-    this.#volume.dispose()
-    this.#shadows.free()
+    this.map.dispose()
+    this.shadows.free()
     for (const screen of this.screens) screen.free()
   }
 }

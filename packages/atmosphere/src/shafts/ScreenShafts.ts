@@ -1,12 +1,11 @@
 import { Vector2 } from 'three'
-import { Fn, If, bool, float, mix, screenCoordinate, screenUV, uv, vec3, vec4 } from 'three/tsl'
-import type { Node, NodeFrame, NodeMaterial, Renderer } from 'three/webgpu'
+import { Fn, If, bool, float, mix, screenUV, uv, vec3 } from 'three/tsl'
+import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
 import { rayLimits } from '../skyVolume/tsl/rayLimits'
 import { sampleVolume } from '../skyVolume/tsl/skyVolume'
-import { scatterSegment } from '../scattering/tsl/segment'
-import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
+import type { Bool, Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
@@ -17,20 +16,12 @@ import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
 import { LostLightGrid, type LostLight } from './LostLightGrid'
 import { seenLight, type SeenForeground } from './tsl/seenLight'
-import { shadowAt, type ShaftRay } from './tsl/shadowsAlong'
+import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf } from './tsl/without'
-import { ditheredDark } from './tsl/polarMap'
-import { screenRay } from '../view/tsl/screenRay'
 import { DepthRays } from '../view/DepthRays'
 
 /** Transmittance below which a foreground layer hides what is behind it. Greater: shafts end at thin clouds (*Below a broken deck*). */
 const MIN_TRANSMITTANCE = 0.01
-
-/** Samples of the shadow between two points of a mesh's ray. Fewer: grain at the edges of shadows, by orthographic cameras. */
-const MESH_SAMPLES = 6
-
-/** Height in radii of the planet above which meshes have no shafts: from there one direction holds all rays of light. */
-const MAX_MESH_HEIGHT = 20
 
 /** Transmittance from which on a foreground is not seen. */
 const CLEAR = 0.99
@@ -60,36 +51,27 @@ const _size = new Vector2()
 export class ScreenShafts implements ScreenShadows {
   readonly foreground: ForegroundLayer | undefined
   readonly #shafts: CameraShafts
-  /** True for a mesh of air, whose rays end at the planet or nowhere. */
-  readonly isMesh: boolean
   readonly #rays: DepthRays
   readonly grid = new LostLightGrid()
   /** 1 if there is a medium, such as fog, in the light of the shafts. */
   readonly #hasMedia = number()
   /** `strengthNow`; 0 while the node of a foreground layer draws the shafts. */
   readonly #strength = number()
-  /** Material that marches these shadows, and version of the shafts that it was compiled for. */
-  #material: NodeMaterial | undefined
-  #compiled = 0
-  /** Likewise, for a mesh that marches its air itself. */
-  readonly #marchedStrength = number()
   /** 1 if what is behind the foreground has shafts already. */
   readonly #isForward = number()
   /** Output per lost light of which the grid keeps parts: half floats hold the moon's, too. */
   readonly #gain = number(1)
 
-  constructor(shafts: CameraShafts, depthNode: Node | null, foreground?: ForegroundLayer) {
+  /** @param isMesh - True for a mesh of air, whose rays end at the planet or nowhere. */
+  constructor(
+    shafts: CameraShafts,
+    depthNode: Node,
+    foreground?: ForegroundLayer,
+    readonly isMesh = false
+  ) {
     this.foreground = foreground
     this.#shafts = shafts
-    this.isMesh = depthNode === null
-    this.#rays = new DepthRays(depthNode ?? float(0.5), shafts.camera)
-  }
-
-  compileWith(material: NodeMaterial): void {
-    const key = material.customProgramCacheKey.bind(material)
-    material.customProgramCacheKey = () => key() + String(this.#shafts.version)
-    this.#material = material
-    this.#compiled = this.#shafts.version
+    this.#rays = new DepthRays(depthNode, shafts.camera)
   }
 
   prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
@@ -99,9 +81,6 @@ export class ScreenShafts implements ScreenShadows {
     shafts.prepare(renderer, view, frame)
     shafts.view.update(view)
     shafts.update(view)
-    if (this.#material === undefined || this.#compiled === shafts.version) return
-    this.#compiled = shafts.version
-    this.#material.needsUpdate = true
   }
 
   prepare(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void {
@@ -134,6 +113,11 @@ export class ScreenShafts implements ScreenShadows {
     this.#isForward.value = Number(this.#shafts.isForward)
   }
 
+  /** Draws none until the next {@link update}. */
+  protected hide(): void {
+    this.#strength.value = 0
+  }
+
   lostAt(position: Vec3, isSky: Bool): Vec3 | undefined {
     if (this.#isDrawnByForeground) return undefined
     const lost = vec3(0).toVar()
@@ -143,70 +127,12 @@ export class ScreenShafts implements ScreenShadows {
     return lost
   }
 
-  prepareMesh(frame: NodeFrame, sun: object, isMarched: boolean): void {
-    const { view, camera, strengthNow } = this.#shafts
-    const { atmosphere, source } = view
-    const isTheirs = frame.camera === camera && sun === atmosphere && source === atmosphere.sun
-    const seen = isTheirs ? view.prepare(frame) : undefined
-    this.#strength.value = this.#marchedStrength.value = 0
-    if (seen === undefined) return
-    const { bottomRadius } = atmosphere.parameters
-    if (isMarched && seen.height < MAX_MESH_HEIGHT * bottomRadius) {
-      this.prepareShadows(frame.renderer!, seen, frame)
-      this.#marchedStrength.value = strengthNow.value
-    }
-    if (isMarched) return
-    this.prepare(frame.renderer!, seen, frame)
-    this.update(seen)
-  }
-
-  scatterAlong(entry: Float): typeof scatterSegment {
-    const { direction, origin } = screenRay()
-    const start = this.#shafts.view.toMapped(origin).toConst() as Vec3
-    const along = this.#shafts.view.toMapped(direction).normalize().toConst() as Vec3
-    const offsetAt = (distance: Float): Vec3 => start.add(along.mul(entry.add(distance)))
-    return (air, ray, from, to) => {
-      const { direct, diffuse } = this.#arriving(offsetAt(from), offsetAt(to))
-      const [once, again] = [true, false].map(isDirect =>
-        scatterSegment(air, ray, from, to, { direct: isDirect, diffuse: !isDirect })
-      )
-      return {
-        molecular: once.molecular.mul(direct).add(again.molecular.mul(diffuse)),
-        aerosol: once.aerosol.mul(direct),
-        depth: once.depth
-      }
-    }
-  }
-
-  /** Parts of the light that arrive between two points, by their offsets [m]: straight from the source, and scattered before. */
-  #arriving(start: Vec3, end: Vec3): { direct: Float; diffuse: Vec4 } {
-    const { view, shadowedAir } = this.#shafts
-    const strength = this.#marchedStrength
-    const direct = float(1).toVar() as Float
-    const diffuse = vec4(1).toVar() as Vec4
-    If(strength.greaterThan(0), () => {
-      const jitter = staggered(screenCoordinate.xy.floor())
-      const share = strength.min(1).div(MESH_SAMPLES).toConst() as Float
-      loop('meshSample', MESH_SAMPLES, index => {
-        const part = float(index).add(jitter).div(MESH_SAMPLES)
-        const offset = mix(start, end, part).toConst() as Vec3
-        const distance = offset.length().max(1e-3).toConst() as Float
-        const ray = { direction: offset.div(distance).toConst() as Vec3, jitter }
-        const { dark, missing } = shadowAt(view, shadowedAir, ray, distance, ditheredDark)
-        direct.subAssign(dark.mul(share))
-        if (missing !== null) diffuse.subAssign(missing.mul(share))
-      })
-    })
-    return { direct, diffuse }
-  }
-
   /** Place of a fragment in the picture: meshes have coordinates of their own. */
   get #place(): Vec2 {
     return this.isMesh ? screenUV : uv()
   }
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
-    const ray = this.#rayTo(end)
     const { front, beyond, tolerance } = this.#seenAt(
       this.#place,
       end.distance,
@@ -214,6 +140,7 @@ export class ScreenShafts implements ScreenShadows {
       transmittance
     )
     const lost = this.grid.read(this.#place, beyond, tolerance, (nearer, most) => {
+      const ray = this.#rayTo(end)
       front?.distance.assign(front.distance.mul(nearer).min(most))
       const to = ray.distance.min(most).toConst()
       return seenLight(to, front, this.#lightOn(ray), 1 - CLEAR).seen

@@ -14,6 +14,9 @@ import { lostLight, staggered } from './tsl/lostLight'
 import type { ShadowedAir, ShaftRay } from './tsl/shadowsAlong'
 import { FAR } from './tsl/without'
 
+/** Rays along the longer edge of the picture. */
+const RAYS = 144
+
 /** Slices of a ray, each in a tile. Fewer: light before surfaces in shadow is blurred with that behind. */
 const SLICES = 24
 
@@ -39,14 +42,6 @@ const _size = new Vector2()
 /** Shafts whose light a volume has; `version` grows whenever its shader changes. */
 type ShaftsInVolume = Pick<CameraShafts, 'view' | 'shadowedAir' | 'steps' | 'version'>
 
-/** Fineness of a {@link ShaftVolume}. */
-export interface VolumeQuality {
-  /** Rays along the longer edge of the picture. */
-  readonly rays: number
-  /** Samples of the shadow in each slice of a ray. */
-  readonly sliceSamples: number
-}
-
 /**
  * Light that shadows keep from a grid of view rays, up to any distance: what materials read that draw the air
  * themselves, transparent ones too. Each ray is cut into slices at distances that are the same for all, and sums of
@@ -63,7 +58,6 @@ export class ShaftVolume {
   readonly #projectionInverse: Mat4
   /** Size of the picture, in steps from ray to ray. */
   readonly #size = vector2()
-  readonly #sliceSamples = number(1)
   /** Distances of slices: where they begin, and those of the first, grow by e per `growth` [m]. */
   readonly #start = number()
   readonly #first = number(1)
@@ -84,16 +78,15 @@ export class ShaftVolume {
   /**
    * Sizes its targets, before anything is drawn with them in a frame.
    *
-   * @param quality - Fineness; null while nothing reads them, to free them.
+   * @param isUsed - False while nothing reads them, to free them.
    */
-  resize(renderer: Renderer, quality: VolumeQuality | null): void {
-    if (quality === null) {
+  resize(renderer: Renderer, isUsed: boolean): void {
+    if (!isUsed) {
       for (const tiles of [this.#slices, this.sums]) tiles.dispose()
       return
     }
-    const { rays, sliceSamples } = quality
     const { width, height } = renderer.getRenderTarget() ?? renderer.getDrawingBufferSize(_size)
-    let step = Math.max(Math.max(width, height) / rays, 1)
+    let step = Math.max(Math.max(width, height) / RAYS, 1)
     do {
       this.#size.value.set(Math.max(width, 1), Math.max(height, 1)).divideScalar(step)
       // One ray more beyond each edge of the picture.
@@ -101,7 +94,6 @@ export class ShaftVolume {
       step *= COARSER
     } while (!this.sums.resize(_size))
     this.#slices.resize(_size)
-    this.#sliceSamples.value = sliceSamples
   }
 
   /**
@@ -153,7 +145,7 @@ export class ShaftVolume {
       const light = vec4(0).toVar()
       const edges = vec4(0).toVar()
       If(slice.lessThan(SLICES - 0.5), () => {
-        const { lost, dark } = lostInSlice(view, shadowedAir, ray, part, this.#sliceSamples, jitter)
+        const { lost, dark } = lostInSlice(view, shadowedAir, ray, part, steps.samples, jitter)
         light.assign(lost)
         edges.xy.assign(dark.sub(from).div(next.sub(from)).clamp())
       }).Else(() => {

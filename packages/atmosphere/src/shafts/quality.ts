@@ -8,14 +8,10 @@ interface Quality {
   readonly spacing: number
   /** Groups of samples along a view ray: places at which the lit air is evaluated. */
   readonly groups: number
-  /** Samples of the shadow in each group. */
+  /** Samples of the shadow in each group, and in each slice of the volume for materials. */
   readonly samples: number
   /** Samples of the shadow in each medium, such as fog. */
   readonly inFog: number
-  /** Rays of the volume for materials along the longer edge of the picture; 0 if each fragment marches. */
-  readonly rays: number
-  /** Samples of the shadow in each slice of such a ray. */
-  readonly sliceSamples: number
 }
 
 export const qualities = {
@@ -25,19 +21,15 @@ export const qualities = {
     spacing: 10,
     groups: 2,
     samples: 3,
-    inFog: 12,
-    rays: 144,
-    sliceSamples: 3
+    inFog: 12
   },
   medium: {
     rows: 960,
-    columns: 240,
-    spacing: 6,
+    columns: 200,
+    spacing: 7,
     groups: 3,
     samples: 3,
-    inFog: 14,
-    rays: 144,
-    sliceSamples: 3
+    inFog: 20
   },
   high: {
     rows: 1024,
@@ -45,9 +37,7 @@ export const qualities = {
     spacing: 3,
     groups: 4,
     samples: 4,
-    inFog: 16,
-    rays: 144,
-    sliceSamples: 4
+    inFog: 16
   },
   reference: {
     rows: 2048,
@@ -55,9 +45,7 @@ export const qualities = {
     spacing: 1,
     groups: 64,
     samples: 8,
-    inFog: 512,
-    rays: 0,
-    sliceSamples: 0
+    inFog: 512
   }
 } as const satisfies Record<string, Quality>
 

@@ -31,7 +31,7 @@ import { sampleAir, type MediumSegment } from '../skyVolume/tsl/skyVolume'
 import { singleScatteringLight } from './tsl/singleScattering'
 import type { ViewSegment } from './tsl/viewSegment'
 import type { Bool } from '../tsl-types'
-import type { AirShadows, ScreenShadows } from '../view/AirShadows'
+import type { AirShadows, MeshShadows } from '../view/AirShadows'
 
 /** Options of {@link AtmosphereShell}. */
 export interface AtmosphereShellOptions {
@@ -133,7 +133,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
   #uniforms = new AtmosphereUniforms()
   readonly #shafts: AirShadows | undefined
   /** Shadows in its air as pixels have them, while it has a renderer. */
-  #shadows: ScreenShadows | undefined
+  #shadows: MeshShadows | undefined
   /** Renderer that tables and volumes are acquired for. */
   #renderer: Renderer | null = null
   readonly #viewpoint = new ViewpointUniforms()
@@ -160,8 +160,12 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
     checkChoice(where, 'model', model, ['tables', 'single-scattering'])
     const lit = shafts?.atmosphere
     const fits = model === 'tables' && lit?.parameters === parameters && shafts?.source === lit.sun
-    if (shafts && !fits)
-      fail(where, 'shafts must be LightShafts of the sun, of these parameters, for tables', shafts)
+    if (shafts && !(fits && shafts.onMesh))
+      fail(
+        where,
+        'shafts must be forwardShafts of the sun, of these parameters, for tables',
+        shafts
+      )
     super(
       circumscribedSphere((bodyRadius * parameters.topRadius) / parameters.bottomRadius),
       shellMaterial()
@@ -202,7 +206,7 @@ export class AtmosphereShell extends Mesh<BufferGeometry, NodeMaterial> {
         undefined,
         tables.volumes.segments
       )
-    this.#shadows = this.#shafts?.upTo(null)
+    this.#shadows = this.#shafts?.onMesh?.()
     this.#shadows?.compileWith(this.material)
     const { color, depth } = shellFragment(
       air,

@@ -27,8 +27,6 @@ export interface ForegroundLayer {
 
 /** Shadows in the air of a picture. */
 export interface ScreenShadows extends SkyLayer {
-  /** Compiles a material with {@link scatterAlong} anew whenever its shader changes. */
-  compileWith(material: NodeMaterial): void
   /**
    * Draws the shadows before a foreground layer is drawn, which may take light past them: `prepare` of a layer with a
    * foreground goes on from there.
@@ -46,6 +44,12 @@ export interface ScreenShadows extends SkyLayer {
    * @param position - Position of what is seen, or of any point in front of the sky, in view space [world units].
    */
   lostAt(position: Vec3, isSky: Bool): Vec3 | undefined
+}
+
+/** Shadows in the air of a mesh, which draws all of each ray, to the planet or out of the air. */
+export interface MeshShadows extends ScreenShadows {
+  /** Compiles a material with {@link scatterAlong} anew whenever its shader changes. */
+  compileWith(material: NodeMaterial): void
   /**
    * Draws what a mesh of air reads, before that is drawn; shadows are for their own camera and their atmosphere's sun alone.
    *
@@ -80,13 +84,14 @@ export interface AirShadows extends Pick<SkyLayer, 'prepare' | 'update' | 'mediu
   /**
    * Layer for a post effect, computed once for its pixels and not by every material.
    *
-   * @param depthNode - Depth of the scene, as the renderer writes it; null for a mesh of air: all of each ray, to the planet
-   *   or out of the air.
+   * @param depthNode - Depth of the scene, as the renderer writes it.
    * @param foreground - Drawn over the air, by a node that then draws these shadows instead of all others: by `dim`.
    * @param picture - The node that draws them, to be checked.
    * @throws If the picture is another camera's or another atmosphere's, which would have no shadows.
    */
-  upTo(depthNode: Node | null, foreground?: ForegroundLayer, picture?: AirPicture): ScreenShadows
+  upTo(depthNode: Node, foreground?: ForegroundLayer, picture?: AirPicture): ScreenShadows
+  /** For a mesh of air; absent from shafts of post effects alone. */
+  onMesh?(): MeshShadows
 }
 
 /** Options of nodes that draw air. */

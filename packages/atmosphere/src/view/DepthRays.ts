@@ -43,11 +43,10 @@ export class DepthRays {
     const depth = this.depthAt(at)
     const isSky = isBackgroundDepth(depth).toConst() as Bool
     const { isOrthographicCamera } = this.camera as OrthographicCamera
-    const position = this.position(renderer, at, isSky.select(0.5, depth).toConst())
-    return {
-      position: isOrthographicCamera ? isSky.select(vec3(0, 0, -1), position) : position,
-      isSky
-    }
+    // Both, as nodes that draw air compute them: compilers take them for the same.
+    const [ahead, drawn] = [float(0.5), depth].map(each => this.position(renderer, at, each))
+    const ray = isOrthographicCamera ? (vec3(0, 0, -1) as unknown as Vec3) : ahead
+    return { position: isSky.select(ray, drawn).toConst(), isSky }
   }
 
   /** Position of a depth at a place of the picture, in view space [world units]. */

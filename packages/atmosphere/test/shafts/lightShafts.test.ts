@@ -10,6 +10,7 @@ import {
   heightFieldShadow,
   heightFog,
   terrainShadow,
+  forwardShafts,
   lightShafts,
   moon,
   MoonDirectionalLight,
@@ -153,20 +154,31 @@ describe('bad input to light shafts', () => {
       () => aerialPerspective(vec4(1), vec4(1), camera, atmosphere, { shafts: [wrong(undefined)] })
     ],
     [
-      'AtmosphereShell: shafts must be LightShafts of the sun, of these parameters, for tables, got a LightShafts',
+      'AtmosphereShell: shafts must be forwardShafts of the sun, of these parameters, for tables, got a ForwardShafts',
       () => {
         const moonlit = new Atmosphere()
         const luna = moon()
         moonlit.add(luna)
         const moonlight = new MoonDirectionalLight(moonlit, luna)
         return new AtmosphereShell(moonlit.parameters, 1, {
-          shafts: lightShafts(moonlit, camera, moonlight)
+          shafts: forwardShafts(moonlit, camera, moonlight)
         })
       }
     ],
     [
-      'LightShafts: atmosphere must be that of its layers, got an Atmosphere',
-      () => new Atmosphere().add(lightShafts(atmosphere, camera, light))
+      'AtmosphereShell: shafts must be forwardShafts of the sun, of these parameters, for tables, got a LightShafts',
+      () => {
+        const shafts = lightShafts(atmosphere, camera, light)
+        return new AtmosphereShell(atmosphere.parameters, 1, { shafts })
+      }
+    ],
+    [
+      'ForwardShafts: atmosphere must be that of its layers, got an Atmosphere',
+      () => new Atmosphere().add(forwardShafts(atmosphere, camera, light))
+    ],
+    [
+      'Atmosphere.add: layer must be a SkyLayer, such as moon() or heightFog(), got a LightShafts',
+      () => atmosphere.add(lightShafts(atmosphere, camera, light))
     ]
   ]
   it.each(cases)('%s', (message, run) => {
@@ -226,7 +238,7 @@ describe('what is added to light shafts', () => {
     expect(shafts.screens.hasForeground).toBe(true)
 
     const layered = new Atmosphere()
-    const post = lightShafts(layered, camera, new SunDirectionalLight(layered))
+    const post = forwardShafts(layered, camera, new SunDirectionalLight(layered))
     layered.add(post)
     const node = aerialPerspective(vec4(0), float(1), camera, layered, { shafts: post })
     expect(post.isForward).toBe(false)
@@ -241,7 +253,7 @@ describe('what is added to light shafts', () => {
       expect([...post.screens]).toContain(screen)
       screen.dispose()
     }
-    post.upTo(null)
+    post.onMesh()
     expect(post.isForward, 'with a mesh of air besides').toBe(true)
   })
 
@@ -270,7 +282,7 @@ describe('what is added to light shafts', () => {
 
   it('asks what casts for room once materials read the shafts, and not where they march', () => {
     const home = new Atmosphere()
-    const shafts = lightShafts(home, camera, new SunDirectionalLight(home), {
+    const shafts = forwardShafts(home, camera, new SunDirectionalLight(home), {
       quality: 'reference'
     })
     let asked = 0
@@ -290,7 +302,7 @@ describe('what is added to light shafts', () => {
 
   it('leaves the layers of the sky in their order', () => {
     const home = new Atmosphere()
-    const shafts = lightShafts(home, camera, new SunDirectionalLight(home))
+    const shafts = forwardShafts(home, camera, new SunDirectionalLight(home))
     const layers = [heightFog(), shafts, distanceFog({ density: 1e-4 }), moon()]
     const { layersVersion } = home.add(...layers)
     shafts.set({ quality: 'low' }).add(occluder).set({ quality: 'high' }).remove(occluder)
