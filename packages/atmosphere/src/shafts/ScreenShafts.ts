@@ -115,9 +115,9 @@ export class ScreenShafts implements ScreenShadows {
     // What is drawn here and now reads the view, and media in it.
     shafts.view.update(view)
     const { parameters, layers } = shafts.view.atmosphere
-    const altitude = Math.max(view.height, 0)
-    const airAt = (above: number): number =>
-      Math.min(...extinction(parameters, densities(parameters, altitude + above)))
+    const [air, above] = [0, THIN_HEIGHT].map(more =>
+      Math.min(...extinction(parameters, densities(parameters, Math.max(view.height, 0) + more)))
+    )
     const media = layers.filter(isShadowed)
     for (const layer of media) layer.update?.(view)
     const fog = media.reduce((sum, { extinction = 0 }) => sum + extinction, 0)
@@ -126,7 +126,7 @@ export class ScreenShafts implements ScreenShadows {
     const { source, air: lookUp } = shafts.view
     const most = Math.max(...lookUp.uniforms.linearSRGB.map(({ value }) => value.y))
     this.#gain.value = Math.max(most, 1e-30) * Math.max(...source.irradiance.value.toArray(), 1e-30)
-    this.grid.setAir(airAt(0), airAt(THIN_HEIGHT), fog, parameters.bottomRadius)
+    this.grid.setAir(air, above, fog, parameters.bottomRadius)
     this.grid.render(renderer, shafts.version, (at, pixel) => this.#march(renderer, at, pixel))
   }
 
@@ -209,15 +209,11 @@ export class ScreenShafts implements ScreenShadows {
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
     const ray = this.#rayTo(end)
+    const at = this.#place
     const thinning = this.grid.thinningOn(ray.cosView)
-    const { front, beyond, tolerance } = this.#seenAt(
-      this.#place,
-      end.distance,
-      thinning,
-      true,
-      transmittance
-    )
-    const lost = this.grid.read(this.#place, beyond, thinning, tolerance, (nearer, most) => {
+    const seen = this.#seenAt(at, end.distance, thinning, true, transmittance)
+    const { front, beyond, tolerance } = seen
+    const lost = this.grid.read(at, beyond, thinning, tolerance, (nearer, most) => {
       front?.distance.assign(front.distance.mul(nearer).min(most))
       const to = ray.distance.min(most).toConst()
       return seenLight(to, front, this.#lightOn(ray), 1 - CLEAR).seen
