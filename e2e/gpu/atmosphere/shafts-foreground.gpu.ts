@@ -46,16 +46,19 @@ interface Clouds {
   readonly distanceAt: (at: Vec2) => Float
   readonly transmittanceAt: (at: Vec2) => Float
   readonly arrives: (distance: Float) => Float
+  /** Angle of the camera's axis above the horizon [°]; left out, 0. */
+  readonly pitch?: number
 }
 
 /** Light that rows of pictures lose before clouds, by the quality of the shafts. */
 async function lostIn(
   renderer: WebGPURenderer,
   qualities: readonly LightShaftsQuality[],
-  { distanceAt, transmittanceAt, arrives }: Clouds
+  { distanceAt, transmittanceAt, arrives, pitch = 0 }: Clouds
 ): Promise<number[][]> {
   const set = stage(renderer, 12)
   const { shafts, depth, camera } = set
+  camera.rotation.x = (pitch * Math.PI) / 180
   camera.updateMatrixWorld()
   const transmittance: AirShadow['transmittance'] =
     () =>
@@ -151,5 +154,31 @@ gpuTest(
         expectTrue(most <= MOST_OVER, `${name}, ${fast[i]}: ${most} more is lost at a pixel`)
       })
     }
+  }
+)
+
+/** Grain of the light that is lost before thin clouds: difference of neighbouring pixels' shares, at most [–]. */
+const MOST_GRAIN = 0.025
+
+gpuTest(
+  'takes light before thin clouds high in a sky that is dark below them, with no grain and no flecks in their gaps',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const high = 16_000
+    const [none, all] = [float(0) as Float, float(1) as Float]
+    const noiseOf = (at: Vec2): Float => at.x.mul(size.width).floor().mul(0.618).fract()
+    const [reference, ...rows] = await lostIn(renderer, ['reference', ...fast], {
+      distanceAt: at => noiseOf(at).mul(0.5).exp2().mul(high) as Float,
+      transmittanceAt: at => noiseOf(at).mul(7).fract().mul(0.1).add(0.91).min(1) as Float,
+      arrives: distance => distance.greaterThan(high).select(all, none),
+      pitch: 30
+    })
+    rows.forEach((row, i) => {
+      const shares = row.map((lost, x) => lost / reference[x])
+      const steps = shares.slice(3, -2).map((share, x) => Math.abs(share - shares[x + 2]))
+      const grain = Math.max(...steps)
+      t.note(`${fast[i]}: ${(100 * grain).toFixed(1)} % of grain`)
+      expectTrue(grain <= MOST_GRAIN, `${fast[i]}: grain of ${grain} before thin clouds`)
+    })
   }
 )

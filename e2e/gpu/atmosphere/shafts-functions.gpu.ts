@@ -122,12 +122,15 @@ gpuTest(
     const [width, height, part] = [48, 30, 0.25]
     const grid = new LostLightGrid()
     grid.resize(width, height, 2)
+    grid.setAir(1, 1, 0, 6.36e6)
+    const thinning = float(1e-8) as Float
+    const beyond = (distance: Float): Float => grid.beyond(distance, thinning)
     // Neighbours are at other depths and in other light, so that none are mixed.
     const march = (_: Vec2, pixel: Vec2): LostLight => {
       const isFar = pixel.x.add(pixel.y).mod(2).greaterThan(0.5)
       const distance = isFar.select(1e4, 1000).toConst() as Float
       const lit = vec3(distance.div(1e4)).toConst() as Vec3
-      return { lost: lit.mul(part), lit, all: lit, distance, beyond: grid.beyond(distance) }
+      return { lost: lit.mul(part), lit, all: lit, distance, beyond: beyond(distance), thinning }
     }
     grid.render(renderer, 1, march)
     // Rounding puts places a little beyond the middles of the first and the last pixels.
@@ -143,7 +146,7 @@ gpuTest(
       places.map(([x, y]) => [x, y, 100, 0]),
       ({ x, y, z }) =>
         vec4(
-          grid.read(vec2(x, y), grid.beyond(z), float(0), () => vec3(2)),
+          grid.read(vec2(x, y), beyond(z), thinning, float(0), () => vec3(2)),
           0
         )
     )

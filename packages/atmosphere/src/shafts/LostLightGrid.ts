@@ -13,6 +13,7 @@ import {
   type Vec4
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
+import { FAR } from './tsl/without'
 
 /** Octaves of depth by which pixels may differ and still share light. Smaller: the march's pixels show on slopes (*Towers in haze*). */
 const SAME_DEPTH = 0.35
@@ -45,6 +46,19 @@ const MAX_KEPT = 6e4
 
 /** Scale of light in the targets. */
 const LIGHT_SCALE = RADIANCE_SCALE / 8
+
+/** Least part of the air on a ray that is left beyond a depth: the sky is no farther. Smaller: float32 has noise there. */
+const LEAST_LEFT = 0.05
+
+/** Part that air thins out on a way below which it is next to even: float32 has noise there. */
+const NEXT_TO_EVEN = 0.01
+
+/** Least extinction of the air, and the least part by which it thins out with each metre of height [1/m]. */
+const LEAST_EXTINCTION = 1e-12
+const LEAST_THINNING = 1e-9
+
+/** Height over which the thinning of the air is found [m]. */
+export const THIN_HEIGHT = 1000
 
 /** Least part of the light of even air that is seen. */
 const MIN_PART = 1e-7
@@ -84,6 +98,8 @@ export interface SeenAir {
   readonly distance: Float
   /** Part of the light of even air without end that lies beyond what is seen: see {@link LostLightGrid.beyond}. */
   readonly beyond: Float
+  /** See {@link LostLightGrid.thinningOn}. */
+  readonly thinning: Float
 }
 
 /** Light of a ray. */
@@ -105,7 +121,7 @@ export interface LostLight extends SeenAir {
  * silhouettes and edges of clouds. Those that are alike in light and depth count most. One that is farther than all loses light up to their depth:
  * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
  *
- * A depth is the distance at which even air has as much light as is seen: clouds hide some of it.
+ * A depth is the distance at which clear air that thins out with height has as much light as is seen: clouds hide some of it.
  */
 export class LostLightGrid {
   /** Lost light with log₂ of the light that there is; its part of that with log₂ of the depth. */
@@ -125,7 +141,10 @@ export class LostLightGrid {
   /** Reciprocal of the pixels of the picture from one that is marched to the next. */
   readonly #density = number(1)
   /** Extinction of the air at the camera, the least of all colours [1/m]. Greater: dark pixels along the horizon (*Ridge at sunrise*). */
-  readonly extinction = number(1)
+  readonly #extinction = number(1)
+  /** Part by which the air thins out with each metre of height [1/m], and the square of the cosine as which a level ray counts. */
+  readonly #thinning = number(1)
+  readonly #grazing = number(1)
   #passes: readonly FragmentPass[] = []
   #compiled = -1
 
@@ -152,6 +171,20 @@ export class LostLightGrid {
   }
 
   /**
+   * Sets the air in which a depth stands for light: it thins out with height, fog does not.
+   *
+   * @param air - Extinction of the air at the camera, and `THIN_HEIGHT` above; of fog [1/m].
+   * @param radius - Radius of the planet [m].
+   */
+  setAir(air: number, above: number, fog: number, radius: number): void {
+    const whole = Math.max(air, LEAST_EXTINCTION) + fog
+    const thinning = Math.max((air - above) / whole / THIN_HEIGHT, LEAST_THINNING)
+    this.#extinction.value = whole
+    this.#thinning.value = thinning
+    this.#grazing.value = 2 / (Math.PI * radius * thinning)
+  }
+
+  /**
    * Draws it.
    *
    * @param version - Grows when the shader of the march changes.
@@ -164,12 +197,12 @@ export class LostLightGrid {
         const pixel = uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
         const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
         const found = march(at, pixel)
-        const { lost, all, distance, beyond } = found
+        const { lost, all, distance, beyond, thinning } = found
         const scale = float(LIGHT_SCALE).div(shownOf(beyond)).toConst()
-        const growth = this.beyond(distance).oneMinus()
+        const growth = this.beyond(distance, thinning).oneMinus()
         const light = log2(luminance(all).max(MIN_LIGHT).mul(LIGHT_SCALE).div(growth))
         lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), light))
-        partsOut.assign(vec4(partsOf(found), this.#depthOf(beyond)))
+        partsOut.assign(vec4(partsOf(found), this.#depthOf(beyond, thinning)))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -211,14 +244,26 @@ export class LostLightGrid {
     return result
   }
 
-  /** Part of the light of even air without end that lies beyond a distance [m]. */
-  beyond(distance: Float): Float {
-    return distance.mul(this.extinction).add(1).reciprocal()
+  /** Part by which the air on a ray thins out with each metre [1/m]; `cosView` is the cosine of its angle from the zenith. */
+  thinningOn(cosView: Float): Float {
+    const half = cosView.mul(0.5).toConst() as Float
+    return half.mul(half).add(this.#grazing).sqrt().add(half).mul(this.#thinning).toConst() as Float
+  }
+
+  /** Part of the light of thinning air without end that lies beyond a distance [m]. */
+  beyond(distance: Float, thinning: Float): Float {
+    const thinned = distance.mul(thinning).toConst() as Float
+    const mean = thinned.negate().exp().oneMinus().div(thinned)
+    const path = distance.mul(thinned.lessThan(NEXT_TO_EVEN).select(thinned.mul(-0.5).add(1), mean))
+    return path.mul(this.#extinction).add(1).reciprocal()
   }
 
   /** log₂ of the distance beyond which a part lies [m]. */
-  #depthOf(beyond: Float): Float {
-    return log2(shownOf(beyond).div(beyond.mul(this.extinction)))
+  #depthOf(beyond: Float, thinning: Float): Float {
+    const path = shownOf(beyond).div(beyond.mul(this.#extinction)).toConst() as Float
+    const thinned = path.mul(thinning).toConst() as Float
+    const mean = thinned.oneMinus().max(LEAST_LEFT).log().negate().div(thinned)
+    return log2(path.mul(thinned.lessThan(NEXT_TO_EVEN).select(thinned.mul(0.5).add(1), mean)))
   }
 
   /**
@@ -230,14 +275,24 @@ export class LostLightGrid {
    * @param lit - Light of its air that is seen, given a factor on the distance of what is seen, and the distance up to which
    *   light is asked for [m]. Called in a branch.
    */
-  read(at: Vec2, beyond: Float, tolerance: Float, lit: (nearer: Float, most: Float) => Vec3): Vec3 {
+  read(
+    at: Vec2,
+    beyond: Float,
+    thinning: Float,
+    tolerance: Float,
+    lit: (nearer: Float, most: Float) => Vec3
+  ): Vec3 {
     const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
-    const own = this.#depthOf(beyond).toConst() as Float
+    const own = this.#depthOf(beyond, thinning).toConst() as Float
     const part = shownOf(beyond).toConst()
-    const nearer = (depth: Float): Float =>
-      depth.sub(own).clamp(tolerance.negate(), tolerance).mul(Math.LN2).add(1)
-    const lost = mean.rgb.mul(part.mul(nearer(mean.w)).div(LIGHT_SCALE)).toVar() as Vec3
+    const moved = (depth: Float): Float =>
+      depth.sub(own).clamp(tolerance.negate(), tolerance).toConst() as Float
+    const shownAt = (depth: Float): Float =>
+      shownOf(this.beyond(depth.exp2() as Float, thinning)).toConst()
+    const known = shownAt(own)
+    const seen = part.mul(shownAt(own.add(moved(mean.w)).toConst() as Float)).div(known)
+    const lost = mean.rgb.mul(seen.div(LIGHT_SCALE)).toVar() as Vec3
     const isLit = mean.w.sub(LIT_DEPTH).abs().lessThan(NEAR_MEAN)
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN).and(isLit.not()), () => {
       const size = this.#gridSize
@@ -257,7 +312,7 @@ export class LostLightGrid {
         const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
         const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
         const other = sampleLevel0(this.#texels, at).toConst()
-        const light = log2(shownOf(this.beyond(other.w.exp2())).div(part))
+        const light = log2(shownAt(other.w as Float).div(known))
         const apart = other.w.sub(own).abs().min(DISTINCT).max(light.abs()).toConst()
         const weight = apart.mul(apart).add(even).reciprocal().toConst()
         sums.addAssign(other.mul(weight))
@@ -265,8 +320,9 @@ export class LostLightGrid {
       })
       sums.divAssign(weights)
       const farther = sums.w.sub(own).add(2 * SAME_DEPTH)
-      const most = sums.w.add(farther.clamp(0, SAME_DEPTH)).exp2() as Float
-      lost.assign(lit(nearer(sums.w), most).mul(sums.rgb))
+      const limit = sums.w.add(farther.max(0)).exp2()
+      const most = farther.lessThan(SAME_DEPTH).select(limit, FAR) as Float
+      lost.assign(lit(moved(sums.w).exp2() as Float, most).mul(sums.rgb))
     })
     return lost
   }

@@ -14,7 +14,7 @@ import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
-import { LostLightGrid, type LostLight } from './LostLightGrid'
+import { LostLightGrid, THIN_HEIGHT, type LostLight } from './LostLightGrid'
 import { seenLight, type SeenForeground } from './tsl/seenLight'
 import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf } from './tsl/without'
@@ -94,7 +94,9 @@ export class ScreenShafts implements ScreenShadows {
     // What is drawn here and now reads the view, and media in it.
     shafts.view.update(view)
     const { parameters, layers } = shafts.view.atmosphere
-    const air = extinction(parameters, densities(parameters, Math.max(view.height, 0)))
+    const [air, above] = [0, THIN_HEIGHT].map(more =>
+      Math.min(...extinction(parameters, densities(parameters, Math.max(view.height, 0) + more)))
+    )
     const media = layers.filter(isShadowed)
     for (const layer of media) layer.update?.(view)
     const fog = media.reduce((sum, { extinction = 0 }) => sum + extinction, 0)
@@ -103,7 +105,7 @@ export class ScreenShafts implements ScreenShadows {
     const { source, air: lookUp } = shafts.view
     const most = Math.max(...lookUp.uniforms.linearSRGB.map(({ value }) => value.y))
     this.#gain.value = Math.max(most, 1e-30) * Math.max(...source.irradiance.value.toArray(), 1e-30)
-    this.grid.extinction.value = Math.max(Math.min(...air), 1e-12) + fog
+    this.grid.setAir(air, above, fog, parameters.bottomRadius)
     this.grid.render(renderer, shafts.version, (at, pixel) => this.#march(renderer, at, pixel))
   }
 
@@ -133,13 +135,12 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
-    const { front, beyond, tolerance } = this.#seenAt(
-      this.#place,
-      end.distance,
-      true,
-      transmittance
-    )
-    const lost = this.grid.read(this.#place, beyond, tolerance, (nearer, most) => {
+    const at = this.#place
+    const cosView = end.offset.dot(this.#shafts.view.up).div(end.length) as Float
+    const thinning = this.grid.thinningOn(cosView)
+    const seen = this.#seenAt(at, end.distance, thinning, true, transmittance)
+    const { front, beyond, tolerance } = seen
+    const lost = this.grid.read(at, beyond, thinning, tolerance, (nearer, most) => {
       const ray = this.#rayTo(end)
       front?.distance.assign(front.distance.mul(nearer).min(most))
       const to = ray.distance.min(most).toConst()
@@ -168,9 +169,9 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. */
-  #seenAt(at: Vec2, to: Float, isRough: boolean, transmittance?: Float): Seen {
+  #seenAt(at: Vec2, to: Float, thinning: Float, isRough: boolean, transmittance?: Float): Seen {
     const { foreground, grid } = this
-    const beyond = grid.beyond(to).toVar()
+    const beyond = grid.beyond(to, thinning).toVar()
     if (foreground === undefined) return { beyond, tolerance: float(0) }
     const passes = transmittance ?? foreground.transmittanceAt(at)
     const isSeen = passes.lessThan(CLEAR).toConst()
@@ -178,7 +179,7 @@ export class ScreenShafts implements ScreenShadows {
     beyond.assign(beyond.max(this.#isForward))
     If(isSeen, () => {
       distance.assign(to.min(foreground.distanceAt(at, isRough)))
-      beyond.assign(mix(grid.beyond(distance), beyond, passes))
+      beyond.assign(mix(grid.beyond(distance, thinning), beyond, passes))
     })
     const behind = passes.mul(this.#isForward.oneMinus()).toConst()
     const front = { distance, before: passes.oneMinus().toConst(), behind }
@@ -190,7 +191,8 @@ export class ScreenShafts implements ScreenShadows {
     const { view, shadowedAir, steps } = this.#shafts
     const ray = this.#rayTo(this.#endIn(renderer, at))
     const { distance } = ray
-    const { front, beyond } = this.#seenAt(at, distance, false)
+    const thinning = this.grid.thinningOn(ray.cosView)
+    const { front, beyond } = this.#seenAt(at, distance, thinning, false)
     let seen: ShaftRay = ray
     if (front !== undefined) {
       const { behind, distance: nearest } = front
@@ -203,7 +205,7 @@ export class ScreenShafts implements ScreenShadows {
     }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
     const { all, seen: lit } = seenLight(distance, front, this.#lightOn(ray))
-    return { lost: this.#color(lost), lit, all, distance, beyond }
+    return { lost: this.#color(lost), lit, all, distance, beyond, thinning }
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */

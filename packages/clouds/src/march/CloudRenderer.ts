@@ -143,6 +143,8 @@ export class CloudRenderer {
   readonly seen: MarchedTargets
   /** Light and distances of the pixels that this frame has marched. */
   readonly marched = texturesOf(this.#shadedTarget)
+  /** Cells between those pixels: see `Cell`. */
+  readonly cells = texturesOf(this.#cellsTarget)
   /** Accumulated light and distances of the latest frame: the nodes stay, their textures change. */
   readonly accumulated = texturesOf(this.#accumulatedTargets[0])
   /** Index of the accumulated target that was drawn last. */
@@ -171,9 +173,8 @@ export class CloudRenderer {
       const key = material.customProgramCacheKey.bind(material)
       material.customProgramCacheKey = () => key() + kindsOf(field) + this.#cast.version
     }
-    const { marched: shaded } = this
+    const { marched: shaded, cells } = this
     this.#gather = new FragmentPass('Welkin.CloudsGather', gatherCells(field, viewRays, shaded))
-    const cells = texturesOf(this.#cellsTarget)
     this.#upscale = this.#accumulatedTargets.map((_, i) => {
       const history = texturesOf(this.#accumulatedTargets[1 - i])
       const output = upscale(viewRays, shaded, cells, history)

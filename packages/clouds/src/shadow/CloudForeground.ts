@@ -8,7 +8,7 @@ import type { Float, Vec2, Vec4 } from '../tsl-types'
 /** Clouds as light shafts see them: drawn over the air, half opaque. */
 export class CloudForeground implements ForegroundLayer {
   readonly #clouds: CloudsNode
-  readonly tolerance = 0.6 * DISTANCE_STEP
+  readonly tolerance = 1.5 * DISTANCE_STEP
   /** True once the shafts have no shadow of the clouds any more. */
   isRemoved = false
 
@@ -21,15 +21,15 @@ export class CloudForeground implements ForegroundLayer {
   }
 
   distanceAt(at: Vec2, isRough: boolean): Float {
-    const { accumulated, marched, viewRays } = this.#clouds.passes
+    const { accumulated, cells, viewRays } = this.#clouds.passes
     const { frame } = viewRays
     const read = ({ distances }: CloudTargets, place: Vec2): Vec4 =>
       distances.sample(place).level(0).toConst()
     const kept = unpack(read(accumulated, at)).x
     if (isRough) return exp2(kept).toConst()
-    // History's distances are bytes, whose steps would show in haze; marched ones are smooth, but of pixels nearby.
-    const block = at.mul(frame.size).sub(frame.jitter).sub(0.5).div(frame.block).add(0.5)
-    const smooth = read(marched, block.div(frame.marchedSize).toConst()).x
+    // History's distances are bytes, of a cell each, whose steps would show in haze: means of cells around are smooth.
+    const place = at.mul(frame.size).sub(0.5).sub(frame.jitter).div(frame.block).add(1)
+    const smooth = read(cells, place.div(frame.marchedSize.add(1)).toConst()).x
     const near = smooth.clamp(kept.sub(this.tolerance), kept.add(this.tolerance))
     return exp2(near).toConst()
   }

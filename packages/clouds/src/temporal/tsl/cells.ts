@@ -39,6 +39,9 @@ export const CORNERS = [
   [1, 1]
 ] as const
 
+/** Opacity by which corners without a cloud count, so that there is a distance where none sees one. */
+export const LEAST_OPACITY = 1e-5
+
 /** True if no corner sees a cloud. */
 export const isClear = ({ y: transmittance }: Vec4): Bool =>
   transmittance.greaterThan((ALL_CLEAR + NOT_CLEAR) / 2)
@@ -88,7 +91,7 @@ export function gatherCells(
       const value = vec2(brightness(color), color.w).toConst() as Vec2
       first.addAssign(value)
       second.addAssign(value.mul(value))
-      seen.addAssign(vec2(1, apart.x).mul(color.w.oneMinus().add(1e-3)))
+      seen.addAssign(vec2(1, apart.x).mul(color.w.oneMinus().add(LEAST_OPACITY)))
       least.assign(least.min(color.w))
       farthest.assign(farthest.max(apart.x))
       ends.assign(vec2(ends.x.min(apart.y), ends.y.max(apart.y)))

@@ -1,7 +1,7 @@
 import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import { loop, type Bool, type Float, type Vec2, type Vec4 } from '../../tsl-types'
 import type { FrameInputs } from '../../march/tsl/viewRay'
-import { passesCellDepthTest, type Cell } from './cells'
+import { LEAST_OPACITY, passesCellDepthTest, type Cell } from './cells'
 import { passesDepthTest } from './depthTest'
 import { SAMPLE_STEPS } from './packing'
 import { brightness, type CloudTargets } from './renderTargets'
@@ -105,7 +105,7 @@ function gatherCorners(
     const passes = passesDepthTest(end, apart).toConst() as Float
     const share = mix(kernel.blend.oneMinus(), kernel.blend, step).toConst() as Vec2
     const weight = share.x.mul(share.y).mul(passes).toConst() as Float
-    const seen = weight.mul(color.w.oneMinus().add(1e-3)).toConst() as Float
+    const seen = weight.mul(color.w.oneMinus().add(LEAST_OPACITY)).toConst() as Float
     const value = vec2(brightness(color), color.w).toConst() as Vec2
     light.addAssign(color.mul(weight))
     total.addAssign(color.mul(passes))

@@ -31,6 +31,8 @@ export interface ReprojectedHistory {
   readonly light: Vec4
   /** Accumulated samples that it is worth; 0 where it is rejected. */
   readonly samples: Float
+  /** log₂ of the distance of its clouds. */
+  readonly distance: Float
   /** Stationarity: 1 where neither clouds nor what was drawn have moved, falling to 0 at a pixel's motion. */
   readonly stationarity: Float
 }
@@ -84,6 +86,7 @@ export function reprojectHistory(
   const { gainChange, maxSamples } = frame
   const isSameEnd = clampedEnd.sub(apart.y).abs().lessThan(SAME_DISTANCE)
   return {
+    distance: apart.x,
     light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
     stationarity: isSameEnd.select(speed.oneMinus().max(0), 0),
     samples: apart.z

@@ -106,14 +106,19 @@ export function upscale(
       const now = estimate(viewRays, marched, where, cell, end)
       const result = now.light.toVar() as Vec4
       const samples = now.weight.toVar()
+      const distance = now.distance.toVar()
       If(frame.hasHistory.greaterThan(0), () => {
         const origin = frame.originArray.element(cell.distances.w.toInt()).xyz
         const last = reprojectHistory(viewRays, history, pixel, ray, end, now.distance, origin)
         accumulate({ light: result, samples }, viewRays, now, last)
+        // Clouds that this frame does not see are where they were.
+        If(now.light.w.greaterThan(CLEAR), () => {
+          distance.assign(last.distance)
+        })
       })
       const signed = result.w.greaterThan(CLEAR).select(samples.negate(), samples)
       light.assign(toHalf(result.max(0), interleavedNoise(pixel, frame.noiseShift)))
-      distances.assign(pack(now.distance, end, signed))
+      distances.assign(pack(distance, end, signed))
     })
   })
 }
