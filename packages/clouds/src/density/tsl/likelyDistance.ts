@@ -5,12 +5,12 @@ import type { Float, Vec2, Vec3 } from '../../tsl-types'
 import { iceAt, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt } from './resolution'
-import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
-import { isStorm, stormNearby } from './storm'
+import { footprintOf, subpointOffset, type CloudSample } from './sample'
+import { isStorm } from './storm'
 import { keepStorm, type KeptStorm } from './stormNearby'
 import { smoothStormStrength } from './stormStrength'
 import { columnStrength } from './strength'
-import { cloudWeather, leanAt, stormRadiusIn } from './weather'
+import { cloudWeather, leanAt, stormsAt } from './weather'
 import { unpackBackground, type PackedBackground } from './weatherBackground'
 
 /** Distance that is farther than any cloud [m]. */
@@ -117,9 +117,7 @@ export function clearOfStorms(
     .toConst() as Vec3
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const around = unpackBackground(background)
-  const zenith = zenithAt(field, subpoint)
-  const radius = stormRadiusIn(layer, around)
-  keepStorm(nearby, stormNearby(layer, subpoint, zenith, around.shift, radius))
+  keepStorm(nearby, stormsAt(field, layer, around, subpoint))
   const still = vec2(0) as Vec2
   const weather = cloudWeather(field, layer, around, subpoint, still, resolution, nearby)
   const fray = weather.stormRadius.mul(iceAt(layer, height)).mul(stormFibres.mostFray)
