@@ -1,6 +1,6 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import type { Float, Vec3 } from '../../tsl-types'
+import type { Bool, Float, Vec3 } from '../../tsl-types'
 import { billows, detail, fineShare, MOST_DETAIL, topBillows } from './billows'
 import { crumbDensity, densityOf, edgeAt } from './density'
 import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
@@ -140,36 +140,47 @@ export function sampleLayerAt(
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const { footprint, unresolvedFraction } = resolution
   const bodies = samples.map(each => bodyAt(field, layer, weather, each, resolution, storm))
-  const found = bodies.map(body => {
-    const { sample, height, strength, detailStrength, edge } = body
-    const whole = strength.toVar() as Float
-    const density = float(0).toVar() as Float
-    const mostDetail = detailStrength
-      .abs()
-      .mul(hasDetail ? MOST_DETAIL : 0)
-      .toConst()
-    If(strength.greaterThan(mostDetail.negate()), () => {
-      if (hasDetail) {
-        If(strength.lessThan(mostDetail.add(edge)).and(mostDetail.greaterThan(0)), () => {
-          const fine = detail(field, layer, sample.offset, footprint)
-          whole.addAssign(fine.mul(detailStrength))
-        })
-      }
-      const full = densityAtHeight(layer, height).mul(body.crumbs)
-      density.assign(densityOf(whole, body.body, edge).mul(full))
+  const found = bodies.map(({ strength, detailStrength, edge }) => {
+    const most = detailStrength.abs().mul(MOST_DETAIL).toConst() as Float
+    const isAtEdge = strength
+      .greaterThan(most.negate())
+      .and(strength.lessThan(most.add(edge)))
+      .and(most.greaterThan(0))
+      .toConst() as Bool
+    return { density: float(0).toVar() as Float, strength: strength.toVar() as Float, isAtEdge }
+  })
+  if (hasDetail) {
+    // Of all samples if one is at an edge: reads that wait for each other take longer than those too many.
+    If(found.map(each => each.isAtEdge).reduce((any, each) => any.or(each)), () => {
+      const offsets = samples.map(({ offset }) => offset)
+      detail(field, layer, offsets, footprint).forEach((fine, i) => {
+        const { strength, isAtEdge } = found[i]
+        strength.addAssign(isAtEdge.select(fine.mul(bodies[i].detailStrength), 0))
+      })
     })
-    return { density, strength: whole }
+  }
+  bodies.forEach(({ height, body, edge, crumbs }, i) => {
+    const { density, strength } = found[i]
+    If(strength.greaterThan(0), () => {
+      const full = densityAtHeight(layer, height).mul(crumbs)
+      density.assign(densityOf(strength, body, edge).mul(full))
+    })
   })
   If(unresolvedFraction.greaterThan(0), () => {
-    bodies.forEach(({ sample, height, weather: { filteredCoverage } }, i) => {
-      const { density, strength } = found[i]
-      const covered = filteredCoverage()
-      If(covered.greaterThan(0), () => {
-        const cosine = direction?.dot(sample.up).toConst() as Float | undefined
-        const mean = unresolvedDensity(field, layer, covered, height, unresolved, cosine)
+    const meanOf = (values: Float[]): Float =>
+      values
+        .reduce((sum, value) => sum.add(value))
+        .div(values.length)
+        .toConst()
+    const covered = meanOf(bodies.map(({ weather: around }) => around.filteredCoverage()))
+    If(covered.greaterThan(0), () => {
+      const height = meanOf(bodies.map(body => body.height))
+      const cosine = direction?.dot(middle.up).toConst() as Float | undefined
+      const mean = unresolvedDensity(field, layer, covered, height, unresolved, cosine)
+      for (const { density, strength } of found) {
         density.assign(mixedDensity(mean.columnDepth, density, mean.density, unresolvedFraction))
         strength.assign(strength.max(0))
-      })
+      }
     })
   })
   return found.map(({ density, strength }) => ({
