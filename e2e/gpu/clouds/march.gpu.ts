@@ -67,7 +67,9 @@ gpuTest(
       const { opacities: got, steps } = await march(of, 1)
       const missed = mean(got.map((opacity, i) => Math.max(expected[i] - opacity, 0)))
       const more = mean(got.map((opacity, i) => Math.max(opacity - expected[i], 0)))
-      t.note(`${name}: cover ${mean(expected).toFixed(3)}, missed ${missed}, more ${more}, ${steps} steps`)
+      t.note(
+        `${name}: cover ${mean(expected).toFixed(3)}, missed ${missed}, more ${more}, ${steps} steps`
+      )
       expectTrue(steps < most, `${name}: ${steps} steps a ray`)
       expectTrue(missed < limit, `${name}: rays miss ${missed} of the sky`)
       expectTrue(more < limit, `${name}: rays meet clouds in ${more} of the sky that is clear`)

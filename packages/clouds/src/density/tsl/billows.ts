@@ -69,11 +69,11 @@ const NEARER_FROM = 5 / 24
 export function detail(
   field: CloudField,
   layer: LayerNodes,
-  offsets: readonly Vec3[],
+  samples: readonly { offset: Vec3 }[],
   footprint: Float
 ): Float[] {
   const { perDetailPeriod } = layer
-  const points = offsets.map(offset => layer.detailLattice(offset).toConst() as Vec3)
+  const points = samples.map(({ offset }) => layer.detailLattice(offset).toConst() as Vec3)
   const width = footprint.mul(perDetailPeriod).toConst() as Float
   const octave = (period: number): Float[] => {
     const level = levelOf(width.div(period), 1 / NOISE_SIZE.detail)

@@ -140,41 +140,44 @@ export function sampleLayerAt(
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const { footprint, unresolvedFraction } = resolution
   const bodies = samples.map(each => bodyAt(field, layer, weather, each, resolution, storm))
-  const found = bodies.map(({ strength, detailStrength, edge }) => {
-    const most = detailStrength.abs().mul(MOST_DETAIL).toConst() as Float
-    const isAtEdge = strength
-      .greaterThan(most.negate())
-      .and(strength.lessThan(most.add(edge)))
-      .and(most.greaterThan(0))
-      .toConst() as Bool
-    return { density: float(0).toVar() as Float, strength: strength.toVar() as Float, isAtEdge }
-  })
+  const found = bodies.map(({ strength }) => ({
+    density: float(0).toVar(),
+    strength: strength.toVar()
+  }))
   if (hasDetail) {
-    // Of all samples if one is at an edge: reads that wait for each other take longer than those too many.
-    If(found.map(each => each.isAtEdge).reduce((any, each) => any.or(each)), () => {
-      const offsets = samples.map(({ offset }) => offset)
-      detail(field, layer, offsets, footprint).forEach((fine, i) => {
-        const { strength, isAtEdge } = found[i]
-        strength.addAssign(isAtEdge.select(fine.mul(bodies[i].detailStrength), 0))
-      })
+    const atEdge = bodies.map(({ strength, detailStrength, edge }): Bool => {
+      const most = detailStrength.abs().mul(MOST_DETAIL).toConst()
+      return strength
+        .greaterThan(most.negate())
+        .and(strength.lessThan(most.add(edge)))
+        .toConst()
     })
+    // Of all samples if one is at an edge: reads that wait for each other take longer than those too many.
+    If(
+      atEdge.reduce((any, each) => any.or(each)),
+      () => {
+        detail(field, layer, samples, footprint).forEach((fine, i) => {
+          found[i].strength.addAssign(atEdge[i].select(fine.mul(bodies[i].detailStrength), 0))
+        })
+      }
+    )
   }
   bodies.forEach(({ height, body, edge, crumbs }, i) => {
     const { density, strength } = found[i]
     If(strength.greaterThan(0), () => {
-      const full = densityAtHeight(layer, height).mul(crumbs)
-      density.assign(densityOf(strength, body, edge).mul(full))
+      density.assign(
+        densityOf(strength, body, edge).mul(densityAtHeight(layer, height)).mul(crumbs)
+      )
     })
   })
   If(unresolvedFraction.greaterThan(0), () => {
-    const meanOf = (values: Float[]): Float =>
-      values
-        .reduce((sum, value) => sum.add(value))
-        .div(values.length)
-        .toConst()
-    const covered = meanOf(bodies.map(({ weather: around }) => around.filteredCoverage()))
+    const covered = bodies
+      .map(({ weather: around }) => around.filteredCoverage())
+      .reduce((sum, each) => sum.add(each))
+      .div(bodies.length)
+      .toConst()
     If(covered.greaterThan(0), () => {
-      const height = meanOf(bodies.map(body => body.height))
+      const height = heightIn(layer, middle.altitude).clamp(0, 1).toConst() as Float
       const cosine = direction?.dot(middle.up).toConst() as Float | undefined
       const mean = unresolvedDensity(field, layer, covered, height, unresolved, cosine)
       for (const { density, strength } of found) {

@@ -86,7 +86,7 @@ export const placeOf = (layer: LayerNodes, subpoint: Vec3, bent: Vec2): Vec3 =>
     .add(inLattice(bent).mul(layer.perWeatherPeriod.div(noisePeriods.fields)))
     .toConst()
 
-/** What storms have in common around a place: it changes over many kilometres. */
+/** Form of all storms around a place: it changes over many kilometres. */
 export interface StormFrame {
   /** Zenith in their lattice. */
   readonly zenith: Vec3
