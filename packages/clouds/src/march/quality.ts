@@ -47,7 +47,7 @@ export type CloudQualityName = 'low' | 'medium' | 'high' | 'ultra'
 export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = {
   low: {
     steps: 160,
-    stepGrowth: 0.012,
+    stepGrowth: 0.008,
     shortestStep: 20,
     depthStep: 1,
     layerSteps: 8,
@@ -56,7 +56,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
   },
   medium: {
     steps: 512,
-    stepGrowth: 0.008,
+    stepGrowth: 0.005,
     shortestStep: 4,
     depthStep: 0.3,
     layerSteps: 14,
@@ -65,7 +65,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
   },
   high: {
     steps: 640,
-    stepGrowth: 0.005,
+    stepGrowth: 0.003,
     shortestStep: 4,
     depthStep: 0.3,
     layerSteps: 18,

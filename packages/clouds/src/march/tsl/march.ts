@@ -66,7 +66,7 @@ export function marchClouds(
     return { offset, ...view.localCoordinates(offset), distance: at }
   }
   const seen = seenState()
-  const state = stepState(jitter, hasStorms(field) !== false)
+  const state = stepState(jitter, hasStorms(field) !== false, field.kinds?.includes('s') === true)
   const segment = segmentState()
   const clear = vec4(0).toVar() as ClearLayers
   /** Pairs of samples so far, of all segments. */
