@@ -6,13 +6,13 @@ import { crumbDensity, densityOf, edgeAt } from './density'
 import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
-import { footprintOf, subpointOffset, type CloudSample } from './sample'
+import { footprintOf, type CloudSample } from './sample'
 import { ifStorm } from './storm'
 import type { StormNearby } from './stormNearby'
 import { stormStrength } from './stormStrength'
 import { columnStrength } from './strength'
 import { mixedDensity, unresolvedDensity, type Unresolved } from './unresolved'
-import { cloudWeather, leanAt, type CloudWeather } from './weather'
+import { cloudWeather, footOf, type CloudWeather } from './weather'
 import {
   unpackBackground,
   type PackedBackground,
@@ -70,12 +70,11 @@ function bodyAt(
   const height = heightIn(layer, sample.altitude).clamp(0, 1).toConst() as Float
   const { shapeLevel } = resolution
   const shape = billows(field, layer, sample.offset, background.shift, shapeLevel)
-  const subpoint = subpointOffset(field, sample).sub(leanAt(layer, sample.up, height))
   const weather = cloudWeather(
     field,
     layer,
     background,
-    subpoint.toConst(),
+    footOf(field, layer, sample, height),
     shape.curl.mul(layer.bend.mul(bendAtHeight(height))).toConst(),
     resolution,
     nearby

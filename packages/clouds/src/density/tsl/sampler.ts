@@ -8,7 +8,7 @@ import { footprintOf, subpointOffset, type CloudSample } from './sample'
 import { sampleLayer, sampleLayerAt, type SampleOptions } from './sampleLayer'
 import { ifStorm } from './storm'
 import { keepStorm, keptStorm, type KeptStorm } from './stormNearby'
-import { leanAt, stormsAt } from './weather'
+import { footOf, stormsAt } from './weather'
 import { unpackBackground, weatherBackground, type PackedBackground } from './weatherBackground'
 
 // The only answer to where the clouds are. `sampleLayerAt` (sampleLayer.ts) goes from a place and the weather's
@@ -52,9 +52,8 @@ function keepStormsAt(
   sample: CloudSample,
   kept: KeptStorm
 ): void {
-  const height = heightIn(layer, sample.altitude)
-  const subpoint = subpointOffset(field, sample).sub(leanAt(layer, sample.up, height))
-  keepStorm(kept, stormsAt(field, layer, unpackBackground(background), subpoint.toConst()))
+  const foot = footOf(field, layer, sample, heightIn(layer, sample.altitude))
+  keepStorm(kept, stormsAt(field, layer, unpackBackground(background), foot))
 }
 
 const nothing = (): void => undefined

@@ -5,7 +5,7 @@ import type { Float, Vec2, Vec3 } from '../../tsl-types'
 import { cumulative } from '../../noise/tsl/noiseChannels'
 import { inLattice, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
-import { footprintOf, zenithAt, type CloudSample } from './sample'
+import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
 import { ifStorm, stormAround, stormNearby } from './storm'
 import { stormRadius, type StormNearby } from './stormNearby'
 import { unpackBackground, weatherBackground, type WeatherBackground } from './weatherBackground'
@@ -61,15 +61,21 @@ export const stormsAt = (
   return stormNearby(layer, subpoint, zenithAt(field, subpoint), shift, radius)
 }
 
-/** Displacement of a layer's columns with height, by the wind's shear, in the mapped space [m]. */
-export const leanAt = (layer: LayerNodes, up: Vec3, height: Float): Vec3 =>
-  layer.shearAxis.cross(up).mul(height.mul(layer.thickness))
+/** Place of the ground that the column through a sample stands on: its subpoint, less the column's lean by the wind's shear [m]. */
+export const footOf = (
+  field: CloudField,
+  layer: LayerNodes,
+  sample: CloudSample,
+  height: Float
+): Vec3 =>
+  subpointOffset(field, sample)
+    .sub(layer.shearAxis.cross(sample.up).mul(height.mul(layer.thickness)))
+    .toConst()
 
 /**
  * Weather of a layer at a place: the background, and single clouds, one texture read; or the nearest storm.
  *
- * @param subpoint - Place of the ground that the column stands on, `subpointOffset` of the sample less
- *   `leanAt`.
+ * @param subpoint - `footOf` the sample.
  * @param bend - Displacement by turbulence [m].
  * @param nearby - In layers of storms, the nearest ones, if they are known: `stormsAt`.
  */
