@@ -146,10 +146,7 @@ export function sampleLayerAt(
   if (hasDetail) {
     const atEdge = bodies.map(({ strength, detailStrength, edge }): Bool => {
       const most = detailStrength.abs().mul(MOST_DETAIL).toConst()
-      return strength
-        .greaterThan(most.negate())
-        .and(strength.lessThan(most.add(edge)))
-        .toConst()
+      return strength.add(most).greaterThan(0).and(strength.sub(most).lessThan(edge)).toConst()
     })
     // Of all samples if one is at an edge: reads that wait for each other take longer than those too many.
     If(

@@ -29,12 +29,6 @@ const CLEAR_GROWTH = 4
 const NEAR_GROWTH = 1.5
 
 /**
- * Growth of steps with the distance in skies with storms, over that in others: towers are large and dense. Greater: faster, and
- * contours in towers (*Storm*).
- */
-const STORM_GROWTH = 1.6
-
-/**
  * Steps through clear air longer than this many in clouds go back where they find one; less than `NEAR_GROWTH`. Greater:
  * near edges are ragged (*Inside a cloud*), and towers have contours, since rays side by side meet them in step (*Storm*).
  */
@@ -74,8 +68,6 @@ export interface StepState {
   readonly jitter: Variable<Float>
   /** True if steps in clear air are cut short by chance. */
   readonly isVaried: boolean
-  /** Factor of their growth with the distance [–]. */
-  readonly growth: number
 }
 
 /** Two steps of the same length. */
@@ -90,9 +82,8 @@ export interface StepPair {
  * Steps before the first segment.
  *
  * @param isVaried - True for steps through clear air of lengths by chance: see {@link SPREAD}.
- * @param isStormy - True in skies that are known to have storms.
  */
-export const stepState = (jitter: Float, isVaried: boolean, isStormy: boolean): StepState => ({
+export const stepState = (jitter: Float, isVaried: boolean): StepState => ({
   isFine: bool(false).toVar(),
   finest: float(0).toVar(),
   longest: float(0).toVar(),
@@ -101,8 +92,7 @@ export const stepState = (jitter: Float, isVaried: boolean, isStormy: boolean): 
   before: float(0).toVar(),
   part: float(0).toVar(),
   jitter: jitter.toVar(),
-  isVaried,
-  growth: isStormy ? STORM_GROWTH : 1
+  isVaried
 })
 
 /**
@@ -145,13 +135,13 @@ const stepIn = (quality: QualityUniforms, density: Float, longest: Float): Float
  * @param transmittance - Share of the light from there that reaches the camera, in [0, 1].
  */
 export function nextSteps(
-  { isFine, finest, longest, likely, isNear, part, jitter, isVaried, growth }: StepState,
-  quality: QualityUniforms,
+  { isFine, finest, longest, likely, isNear, part, jitter, isVaried }: StepState,
+  stepGrowth: Float,
   position: Float,
   end: Float,
   transmittance: Float
 ): StepPair {
-  const growing = position.mul(quality.stepGrowth.mul(growth)).toConst() as Float
+  const growing = position.mul(stepGrowth).toConst() as Float
   const fine = finest.max(growing).min(longest).toConst() as Float
   const least = fine
     .max(growing.mul(isNear.select(NEAR_GROWTH, CLEAR_GROWTH)))
