@@ -161,9 +161,8 @@ export function sampleLayerAt(
   bodies.forEach(({ height, body, edge, crumbs }, i) => {
     const { density, strength } = found[i]
     If(strength.greaterThan(0), () => {
-      density.assign(
-        densityOf(strength, body, edge).mul(densityAtHeight(layer, height)).mul(crumbs)
-      )
+      const full = densityAtHeight(layer, height).mul(crumbs)
+      density.assign(densityOf(strength, body, edge).mul(full))
     })
   })
   If(unresolvedFraction.greaterThan(0), () => {

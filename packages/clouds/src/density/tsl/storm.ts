@@ -9,7 +9,6 @@ import {
   squareFrom,
   stormGaps,
   stormRank,
-  type StormGaps,
   type StormNearby
 } from './stormNearby'
 
@@ -93,15 +92,15 @@ export function stormAround(
   { anvil, tower, zenith, downwind }: StormNearby
 ): StormAround {
   const at = placeOf(layer, subpoint, bent).mul(stormPlaces.cells).toConst() as Vec3
-  const found: StormGaps = { anvil: anvil.sub(at), tower: tower.sub(at) }
-  const cells = squareFrom(found.anvil.toConst(), zenith).sqrt().toConst() as Float
-  const toTower = found.tower.sub(downwind).toConst() as Vec3
+  const toAnvil = anvil.sub(at).toConst() as Vec3
+  const cells = squareFrom(toAnvil, zenith).sqrt().toConst() as Float
+  const toTower = tower.sub(at).sub(downwind).toConst() as Vec3
   const length = cellLength(layer)
   return {
     distance: cells.mul(length).toConst(),
     towerDistance: squareFrom(toTower, zenith).sqrt().mul(length).toConst(),
     // From that anvil's own tower, not the nearest.
-    fibrePlace: fibrePlace(anvil, downwind.sub(found.anvil), zenith, length),
+    fibrePlace: fibrePlace(anvil, downwind.sub(toAnvil), zenith, length),
     rank: stormRank(cells)
   }
 }

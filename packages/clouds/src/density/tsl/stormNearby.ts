@@ -116,8 +116,8 @@ export const keptStorm = (): KeptStorm => ({
 
 /** Keeps the nearest storms. */
 export function keepStorm(kept: KeptStorm, found: StormNearby): void {
-  for (const [key, variable] of Object.entries(kept)) {
-    variable.assign(found[key as keyof StormNearby] as Vec3 & Float)
+  for (const key of Object.keys(kept) as (keyof StormNearby)[]) {
+    kept[key].assign(found[key] as Vec3 & Float)
   }
 }
 
