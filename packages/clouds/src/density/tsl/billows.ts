@@ -61,31 +61,33 @@ const NEARER = [
 const NEARER_FROM = 5 / 24
 
 /**
- * Detail finer than billows, of unit deviation near by: three octaves of one noise, down to a
- * thousandth of its period. What is finer than the sample's footprint is left out.
+ * Detail finer than billows at places near each other, of unit deviation near by: three octaves of one noise, down to a
+ * thousandth of its period. What is finer than the samples' footprint is left out.
  *
  * To be called inside of a shader function.
  */
 export function detail(
   field: CloudField,
   layer: LayerNodes,
-  offset: Vec3,
+  samples: readonly { offset: Vec3 }[],
   footprint: Float
-): Float {
+): Float[] {
   const { perDetailPeriod } = layer
-  const point = layer.detailLattice(offset).toConst() as Vec3
+  const points = samples.map(({ offset }) => layer.detailLattice(offset).toConst() as Vec3)
   const width = footprint.mul(perDetailPeriod).toConst() as Float
-  const octave = (period: number): Float => {
+  const octave = (period: number): Float[] => {
     const level = levelOf(width.div(period), 1 / NOISE_SIZE.detail)
-    return decoded(field.textures.detail.sample(point.div(period)).level(level)).x
+    return points.map(
+      point => decoded(field.textures.detail.sample(point.div(period)).level(level)).x
+    )
   }
-  const sum = octave(1).toVar() as Float
+  const sums = octave(1).map(noise => noise.toVar() as Float)
   for (const [period, amplitude] of NEARER) {
     If(width.lessThan(NEARER_FROM * period), () => {
-      sum.addAssign(octave(period).mul(amplitude))
+      octave(period).forEach((noise, i) => sums[i].addAssign(noise.mul(amplitude)))
     })
   }
-  return sum
+  return sums
 }
 
 /** Most that detail adds, per its strength [–]. */

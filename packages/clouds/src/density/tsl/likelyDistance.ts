@@ -1,16 +1,16 @@
 import { float, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { stormBillows, stormFibres } from '../stormForm'
-import type { Float, Vec2, Vec3 } from '../../tsl-types'
+import type { Float, Vec2 } from '../../tsl-types'
 import { iceAt, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt } from './resolution'
-import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
-import { isStorm, stormNearby } from './storm'
+import { footprintOf, type CloudSample } from './sample'
+import { isStorm } from './storm'
 import { keepStorm, type KeptStorm } from './stormNearby'
 import { smoothStormStrength } from './stormStrength'
 import { columnStrength } from './strength'
-import { cloudWeather, leanAt, stormRadiusIn } from './weather'
+import { cloudWeather, footOf, stormsAt } from './weather'
 import { unpackBackground, type PackedBackground } from './weatherBackground'
 
 /** Distance that is farther than any cloud [m]. */
@@ -112,14 +112,10 @@ export function clearOfStorms(
   nearby: KeptStorm
 ): Float {
   const height = heightIn(layer, middle.altitude)
-  const subpoint = subpointOffset(field, middle)
-    .sub(leanAt(layer, middle.up, height))
-    .toConst() as Vec3
+  const subpoint = footOf(field, layer, middle, height)
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const around = unpackBackground(background)
-  const zenith = zenithAt(field, subpoint)
-  const radius = stormRadiusIn(layer, around)
-  keepStorm(nearby, stormNearby(layer, subpoint, zenith, around.shift, radius))
+  keepStorm(nearby, stormsAt(field, layer, around, subpoint))
   const still = vec2(0) as Vec2
   const weather = cloudWeather(field, layer, around, subpoint, still, resolution, nearby)
   const fray = weather.stormRadius.mul(iceAt(layer, height)).mul(stormFibres.mostFray)

@@ -1,18 +1,18 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
-import type { Float, Vec3 } from '../../tsl-types'
+import type { Bool, Float, Vec3 } from '../../tsl-types'
 import { billows, detail, fineShare, MOST_DETAIL, topBillows } from './billows'
 import { crumbDensity, densityOf, edgeAt } from './density'
 import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
-import { footprintOf, subpointOffset, type CloudSample } from './sample'
+import { footprintOf, type CloudSample } from './sample'
 import { ifStorm } from './storm'
 import type { StormNearby } from './stormNearby'
 import { stormStrength } from './stormStrength'
 import { columnStrength } from './strength'
 import { mixedDensity, unresolvedDensity, type Unresolved } from './unresolved'
-import { cloudWeather, leanAt, type CloudWeather } from './weather'
+import { cloudWeather, footOf, type CloudWeather } from './weather'
 import {
   unpackBackground,
   type PackedBackground,
@@ -70,12 +70,11 @@ function bodyAt(
   const height = heightIn(layer, sample.altitude).clamp(0, 1).toConst() as Float
   const { shapeLevel } = resolution
   const shape = billows(field, layer, sample.offset, background.shift, shapeLevel)
-  const subpoint = subpointOffset(field, sample).sub(leanAt(layer, sample.up, height))
   const weather = cloudWeather(
     field,
     layer,
     background,
-    subpoint.toConst(),
+    footOf(field, layer, sample, height),
     shape.curl.mul(layer.bend.mul(bendAtHeight(height))).toConst(),
     resolution,
     nearby
@@ -140,36 +139,46 @@ export function sampleLayerAt(
   const resolution = resolutionAt(layer, footprintOf(field, middle))
   const { footprint, unresolvedFraction } = resolution
   const bodies = samples.map(each => bodyAt(field, layer, weather, each, resolution, storm))
-  const found = bodies.map(body => {
-    const { sample, height, strength, detailStrength, edge } = body
-    const whole = strength.toVar() as Float
-    const density = float(0).toVar() as Float
-    const mostDetail = detailStrength
-      .abs()
-      .mul(hasDetail ? MOST_DETAIL : 0)
-      .toConst()
-    If(strength.greaterThan(mostDetail.negate()), () => {
-      if (hasDetail) {
-        If(strength.lessThan(mostDetail.add(edge)).and(mostDetail.greaterThan(0)), () => {
-          const fine = detail(field, layer, sample.offset, footprint)
-          whole.addAssign(fine.mul(detailStrength))
+  const found = bodies.map(({ strength }) => ({
+    density: float(0).toVar(),
+    strength: strength.toVar()
+  }))
+  if (hasDetail) {
+    const atEdge = bodies.map(({ strength, detailStrength, edge }): Bool => {
+      const most = detailStrength.abs().mul(MOST_DETAIL).toConst()
+      return strength.add(most).greaterThan(0).and(strength.sub(most).lessThan(edge)).toConst()
+    })
+    // Of all samples if one is at an edge: reads that wait for each other take longer than those too many.
+    If(
+      atEdge.reduce((any, each) => any.or(each)),
+      () => {
+        detail(field, layer, samples, footprint).forEach((fine, i) => {
+          found[i].strength.addAssign(atEdge[i].select(fine.mul(bodies[i].detailStrength), 0))
         })
       }
-      const full = densityAtHeight(layer, height).mul(body.crumbs)
-      density.assign(densityOf(whole, body.body, edge).mul(full))
+    )
+  }
+  bodies.forEach(({ height, body, edge, crumbs }, i) => {
+    const { density, strength } = found[i]
+    If(strength.greaterThan(0), () => {
+      const full = densityAtHeight(layer, height).mul(crumbs)
+      density.assign(densityOf(strength, body, edge).mul(full))
     })
-    return { density, strength: whole }
   })
   If(unresolvedFraction.greaterThan(0), () => {
-    bodies.forEach(({ sample, height, weather: { filteredCoverage } }, i) => {
-      const { density, strength } = found[i]
-      const covered = filteredCoverage()
-      If(covered.greaterThan(0), () => {
-        const cosine = direction?.dot(sample.up).toConst() as Float | undefined
-        const mean = unresolvedDensity(field, layer, covered, height, unresolved, cosine)
+    const covered = bodies
+      .map(({ weather: around }) => around.filteredCoverage())
+      .reduce((sum, each) => sum.add(each))
+      .div(bodies.length)
+      .toConst()
+    If(covered.greaterThan(0), () => {
+      const height = heightIn(layer, middle.altitude).clamp(0, 1).toConst() as Float
+      const cosine = direction?.dot(middle.up).toConst() as Float | undefined
+      const mean = unresolvedDensity(field, layer, covered, height, unresolved, cosine)
+      for (const { density, strength } of found) {
         density.assign(mixedDensity(mean.columnDepth, density, mean.density, unresolvedFraction))
         strength.assign(strength.max(0))
-      })
+      }
     })
   })
   return found.map(({ density, strength }) => ({

@@ -4,11 +4,11 @@ import { hasStorms } from '../kinds'
 import type { WeatherMap } from '../WeatherMap'
 import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
-import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
+import { footprintOf, subpointOffset, type CloudSample } from './sample'
 import { sampleLayer, sampleLayerAt, type SampleOptions } from './sampleLayer'
-import { ifStorm, stormNearby } from './storm'
+import { ifStorm } from './storm'
 import { keepStorm, keptStorm, type KeptStorm } from './stormNearby'
-import { leanAt, stormRadiusIn } from './weather'
+import { footOf, stormsAt } from './weather'
 import { unpackBackground, weatherBackground, type PackedBackground } from './weatherBackground'
 
 // The only answer to where the clouds are. `sampleLayerAt` (sampleLayer.ts) goes from a place and the weather's
@@ -52,12 +52,8 @@ function keepStormsAt(
   sample: CloudSample,
   kept: KeptStorm
 ): void {
-  const height = heightIn(layer, sample.altitude)
-  const subpoint = subpointOffset(field, sample).sub(leanAt(layer, sample.up, height))
-  const around = unpackBackground(background)
-  const radius = stormRadiusIn(layer, around)
-  const place = subpoint.toConst() as Vec3
-  keepStorm(kept, stormNearby(layer, place, zenithAt(field, place), around.shift, radius))
+  const foot = footOf(field, layer, sample, heightIn(layer, sample.altitude))
+  keepStorm(kept, stormsAt(field, layer, unpackBackground(background), foot))
 }
 
 const nothing = (): void => undefined

@@ -9,7 +9,6 @@ import {
   squareFrom,
   stormGaps,
   stormRank,
-  type StormGaps,
   type StormNearby
 } from './stormNearby'
 
@@ -22,9 +21,8 @@ export interface StormAround {
   readonly distance: Float
   /** Distance from the axis of the nearest tower, which stands upwind of its anvil, measured alike [m]. */
   readonly towerDistance: Float
-  /** Place in the noise that makes fibres, less its part by height, and the zenith there [periods]. */
+  /** Place in the noise that makes fibres, less its part by height [periods]. */
   readonly fibrePlace: Vec3
-  readonly zenith: Vec3
   /** Rank of that distance among all places of the planet, in [0, 1]: 1 on the axis. */
   readonly rank: Float
 }
@@ -54,37 +52,13 @@ const asidePerShear = ({ anvil, thickness }: LayerNodes, shear: Float, radius: F
     .mul(smoothstep(...stormShape.anvilFrom, radius.div(thickness)))
     .mul(radius)
 
-/** A place among storms, in their lattice [cells]. */
-interface PlaceAmongStorms {
-  /** In the lattice's periods. */
-  readonly place: Vec3
-  readonly at: Vec3
-  /** Zenith there. */
-  readonly zenith: Vec3
-  /** Displacement from a storm's tower to the middle of its anvil, horizontal. */
-  readonly downwind: Vec3
-}
-
-/** See `stormAround`. */
-function placeAmongStorms(
-  layer: LayerNodes,
-  subpoint: Vec3,
-  up: Vec3,
-  bent: Vec2,
-  radius: Float
-): PlaceAmongStorms {
-  const place = placeOf(layer, subpoint, bent)
-  const zenith = layer.directionInFields(up).toConst() as Vec3
-  const lean = layer.shearAxis.cross(up).toConst() as Vec3
-  const aside = asidePerShear(layer, lean.length(), radius).mul(stormPlaces.cells)
-  const downwind = layer.displacementInFields(lean).mul(aside).toConst() as Vec3
-  return { place, at: place.mul(stormPlaces.cells).toConst(), zenith, downwind }
-}
-
 /**
  * The storms nearest to a place, without turbulence: what `stormAround` takes as `nearby`.
  *
+ * @param subpoint - As of `cloudWeather`.
+ * @param up - Zenith there, in the mapped space.
  * @param shift - `shift` of `WeatherBackground` [m].
+ * @param radius - `stormRadius` [m].
  */
 export function stormNearby(
   layer: LayerNodes,
@@ -93,9 +67,14 @@ export function stormNearby(
   shift: Vec2,
   radius: Float
 ): StormNearby {
-  const { place, at, zenith, downwind } = placeAmongStorms(layer, subpoint, up, shift, radius)
+  const place = placeOf(layer, subpoint, shift)
+  const zenith = layer.directionInFields(up).toConst() as Vec3
+  const lean = layer.shearAxis.cross(up).toConst() as Vec3
+  const aside = asidePerShear(layer, lean.length(), radius).mul(stormPlaces.cells)
+  const downwind = layer.displacementInFields(lean).mul(aside).toConst() as Vec3
   const { anvil, tower } = stormGaps(place, zenith, downwind)
-  return { anvil: at.add(anvil), tower: at.add(tower) }
+  const at = place.mul(stormPlaces.cells).toConst() as Vec3
+  return { anvil: at.add(anvil), tower: at.add(tower), zenith, downwind, radius }
 }
 
 /**
@@ -103,30 +82,25 @@ export function stormNearby(
  * would end in a wall where another's anvil is nearer than its own.
  *
  * @param subpoint - As of `cloudWeather`.
- * @param up - Zenith there, in the mapped space.
  * @param bent - Displacement of the look-up along two axes of the lattice [m].
- * @param radius - `stormRadius` [m].
  * @param nearby - The nearest storms: `stormNearby`.
  */
 export function stormAround(
   layer: LayerNodes,
   subpoint: Vec3,
-  up: Vec3,
   bent: Vec2,
-  radius: Float,
-  nearby: StormNearby
+  { anvil, tower, zenith, downwind }: StormNearby
 ): StormAround {
-  const { at, zenith, downwind } = placeAmongStorms(layer, subpoint, up, bent, radius)
-  const found: StormGaps = { anvil: nearby.anvil.sub(at), tower: nearby.tower.sub(at) }
-  const cells = squareFrom(found.anvil.toConst(), zenith).sqrt().toConst() as Float
-  const toTower = found.tower.sub(downwind).toConst() as Vec3
+  const at = placeOf(layer, subpoint, bent).mul(stormPlaces.cells).toConst() as Vec3
+  const toAnvil = anvil.sub(at).toConst() as Vec3
+  const cells = squareFrom(toAnvil, zenith).sqrt().toConst() as Float
+  const toTower = tower.sub(at).sub(downwind).toConst() as Vec3
   const length = cellLength(layer)
   return {
     distance: cells.mul(length).toConst(),
     towerDistance: squareFrom(toTower, zenith).sqrt().mul(length).toConst(),
     // From that anvil's own tower, not the nearest.
-    fibrePlace: fibrePlace(at.add(found.anvil), downwind.sub(found.anvil), zenith, length),
-    zenith,
+    fibrePlace: fibrePlace(anvil, downwind.sub(toAnvil), zenith, length),
     rank: stormRank(cells)
   }
 }

@@ -86,19 +86,39 @@ export const placeOf = (layer: LayerNodes, subpoint: Vec3, bent: Vec2): Vec3 =>
     .add(inLattice(bent).mul(layer.perWeatherPeriod.div(noisePeriods.fields)))
     .toConst()
 
-/** Points of the axes of the storms nearest to a place, kept for places nearby, in the lattice [cells]: `StormGaps`. */
-export type StormNearby = StormGaps
+/** Form of all storms around a place: it changes over many kilometres. */
+export interface StormFrame {
+  /** Zenith in their lattice. */
+  readonly zenith: Vec3
+  /** Displacement from a storm's tower to the middle of its anvil, horizontal [cells]. */
+  readonly downwind: Vec3
+  /** `stormRadius` [m]. */
+  readonly radius: Float
+}
+
+/**
+ * The storms nearest to a place, kept for places nearby: points of their axes in the lattice [cells], as of `StormGaps`, and
+ * their frame.
+ */
+export interface StormNearby extends StormGaps, StormFrame {}
 
 /** Variables that hold it. */
-export type KeptStorm = { readonly [Key in keyof StormNearby]: Variable<Vec3> }
+export type KeptStorm = { readonly [Key in keyof StormNearby]: Variable<StormNearby[Key]> }
 
 /** Variables for the nearest storms. To be called inside of a shader function. */
-export const keptStorm = (): KeptStorm => ({ anvil: vec3(0).toVar(), tower: vec3(0).toVar() })
+export const keptStorm = (): KeptStorm => ({
+  anvil: vec3(0).toVar(),
+  tower: vec3(0).toVar(),
+  zenith: vec3(0).toVar(),
+  downwind: vec3(0).toVar(),
+  radius: float(0).toVar()
+})
 
 /** Keeps the nearest storms. */
-export function keepStorm(kept: KeptStorm, { anvil, tower }: StormNearby): void {
-  kept.anvil.assign(anvil)
-  kept.tower.assign(tower)
+export function keepStorm(kept: KeptStorm, found: StormNearby): void {
+  for (const key of Object.keys(kept) as (keyof StormNearby)[]) {
+    kept[key].assign(found[key] as Vec3 & Float)
+  }
 }
 
 /** Length of a cell [m]. */

@@ -5,7 +5,7 @@ import type { Float, Vec2, Vec3 } from '../../tsl-types'
 import { cumulative } from '../../noise/tsl/noiseChannels'
 import { inLattice, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
-import { footprintOf, zenithAt, type CloudSample } from './sample'
+import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
 import { ifStorm, stormAround, stormNearby } from './storm'
 import { stormRadius, type StormNearby } from './stormNearby'
 import { unpackBackground, weatherBackground, type WeatherBackground } from './weatherBackground'
@@ -20,7 +20,7 @@ export interface CloudWeather {
   readonly stormDistance: Float
   readonly towerDistance: Float
   readonly stormRadius: Float
-  /** In layers of storms, `fibrePlace` and `zenith` of `StormAround`. */
+  /** In layers of storms, `fibrePlace` of `StormAround` and the zenith there. */
   readonly fibrePlace: Vec3
   readonly fibreZenith: Vec3
 }
@@ -46,21 +46,38 @@ function coverageOf(layer: LayerNodes, weather: Float, variance: Float, coverage
   return coverage.greaterThan(0).select(all, 0)
 }
 
-/** Radius of storms in a background of the weather [m]. */
-export const stormRadiusIn = (layer: LayerNodes, { sum, coverage }: WeatherBackground): Float =>
-  stormRadius(layer, sum, quantileOf(coverage))
+/**
+ * The storms nearest to a place, without turbulence.
+ *
+ * @param subpoint - As of `cloudWeather`.
+ */
+export const stormsAt = (
+  field: CloudField,
+  layer: LayerNodes,
+  { sum, coverage, shift }: WeatherBackground,
+  subpoint: Vec3
+): StormNearby => {
+  const radius = stormRadius(layer, sum, quantileOf(coverage))
+  return stormNearby(layer, subpoint, zenithAt(field, subpoint), shift, radius)
+}
 
-/** Displacement of a layer's columns with height, by the wind's shear, in the mapped space [m]. */
-export const leanAt = (layer: LayerNodes, up: Vec3, height: Float): Vec3 =>
-  layer.shearAxis.cross(up).mul(height.mul(layer.thickness))
+/** Place of the ground that the column through a sample stands on: its subpoint, less the column's lean by the wind's shear [m]. */
+export const footOf = (
+  field: CloudField,
+  layer: LayerNodes,
+  sample: CloudSample,
+  height: Float
+): Vec3 =>
+  subpointOffset(field, sample)
+    .sub(layer.shearAxis.cross(sample.up).mul(height.mul(layer.thickness)))
+    .toConst()
 
 /**
  * Weather of a layer at a place: the background, and single clouds, one texture read; or the nearest storm.
  *
- * @param subpoint - Place of the ground that the column stands on, `subpointOffset` of the sample less
- *   `leanAt`.
+ * @param subpoint - `footOf` the sample.
  * @param bend - Displacement by turbulence [m].
- * @param nearby - In layers of storms, the nearest ones, if they are known.
+ * @param nearby - In layers of storms, the nearest ones, if they are known: `stormsAt`.
  */
 export function cloudWeather(
   field: CloudField,
@@ -80,14 +97,13 @@ export function cloudWeather(
   ifStorm(
     layer,
     () => {
-      radius.assign(stormRadiusIn(layer, background))
-      const zenith = zenithAt(field, subpoint)
-      const found = nearby ?? stormNearby(layer, subpoint, zenith, background.shift, radius)
-      const storm = stormAround(layer, subpoint, zenith, bent, radius, found)
+      const found = nearby ?? stormsAt(field, layer, background, subpoint)
+      const storm = stormAround(layer, subpoint, bent, found)
+      radius.assign(found.radius)
       stormDistance.assign(storm.distance)
       towerDistance.assign(storm.towerDistance)
       fibrePlace.assign(storm.fibrePlace)
-      fibreZenith.assign(storm.zenith)
+      fibreZenith.assign(found.zenith)
       single.assign(storm.rank.sub(0.5).mul(layer.weights.z).mul(cloudsLost.oneMinus().sqrt()))
     },
     () => {

@@ -20,6 +20,12 @@ const NESTED_FROM = 3
 /** Most crossings of a ray with the boundaries of a layer: two with each, on the way down and up again. */
 const CROSSINGS = 4
 
+/**
+ * Growth of steps with the distance in skies with storms, over that in others [–]: towers are large and dense. Greater: faster, and
+ * contours in towers (*Storm*).
+ */
+const STORM_GROWTH = 1.6
+
 /** A ray from the camera, in the mapped space. */
 export interface CloudRay {
   /** Unit length. */
@@ -67,6 +73,8 @@ export function marchClouds(
   }
   const seen = seenState()
   const state = stepState(jitter, hasStorms(field) !== false)
+  const isStormy = field.kinds?.includes('s')
+  const stepGrowth = quality.stepGrowth.mul(isStormy ? STORM_GROWTH : 1) as Float
   const segment = segmentState()
   const clear = vec4(0).toVar() as ClearLayers
   /** Pairs of samples so far, of all segments. */
@@ -104,7 +112,7 @@ export function marchClouds(
   }
   const goOn = (): void => {
     pairs.addAssign(1)
-    const pair = nextSteps(state, quality, position, segment.end, seen.transmittance)
+    const pair = nextSteps(state, stepGrowth, position, segment.end, seen.transmittance)
     const { length } = pair
     const places = [0.5, 1.5].map(at => position.add(length.mul(at)).toConst() as Float)
     const middle = sampleAt(position.add(length))

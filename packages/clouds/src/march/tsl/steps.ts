@@ -136,12 +136,12 @@ const stepIn = (quality: QualityUniforms, density: Float, longest: Float): Float
  */
 export function nextSteps(
   { isFine, finest, longest, likely, isNear, part, jitter, isVaried }: StepState,
-  quality: QualityUniforms,
+  stepGrowth: Float,
   position: Float,
   end: Float,
   transmittance: Float
 ): StepPair {
-  const growing = position.mul(quality.stepGrowth).toConst() as Float
+  const growing = position.mul(stepGrowth).toConst() as Float
   const fine = finest.max(growing).min(longest).toConst() as Float
   const least = fine
     .max(growing.mul(isNear.select(NEAR_GROWTH, CLEAR_GROWTH)))
