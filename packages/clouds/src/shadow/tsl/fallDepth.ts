@@ -34,5 +34,6 @@ export function fallMoments(
     const extinction = falling.extinctionAt(field, layer, sampleAt(at)).div(field.depthScale)
     sums.addAssign(vec3(1, at, at.mul(at)).mul(extinction.mul(length)))
   })
-  return { sums, entry: sums.x.greaterThan(0).select(front, NO_CLOUDS) }
+  const depth = sums.x.toConst() as Float
+  return { sums, depth, entry: depth.greaterThan(0).select(front, NO_CLOUDS) }
 }
