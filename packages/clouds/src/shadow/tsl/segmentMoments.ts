@@ -49,8 +49,8 @@ const LOOK_BACK = 1.5
 const LEAST_PART = 0.25
 
 /**
- * Greatest optical depth whose places count, from the side of the light on: what lies behind is dark, wherever it is. Greater: a head
- * before a tower casts no shadow on it (*Storm*).
+ * Greatest optical depth whose places count, from the side of the light on: what lies behind is dark. Greater: a head before a tower
+ * casts no shadow on it (*Storm*).
  */
 export const MOST_COUNTED = 100
 
