@@ -1,6 +1,5 @@
 import { Break, If, bool, float, mix, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
-import { likelyDistance } from '../../density/tsl/likelyDistance'
 import type { LayerNodes } from '../../density/tsl/layer'
 import { sampleLayerPair } from '../../density/tsl/sampler'
 import type { CloudSample } from '../../density/tsl/sample'
@@ -33,14 +32,14 @@ const EVEN_STEPS = 48
 const FINE_PART = 1 / 6
 const FINEST = 60
 
-/** Steps over the likely distance to clouds [–]. Greater: heads cast no shadows under a low sun; smaller: rays run out of steps. */
-const BOLDNESS = 3
+/**
+ * Steps through clear air, over which its strength changes by 1 [periods of the shape]. Greater: heads cast no shadows under a low sun
+ * (*Storm*); smaller: rays run out of steps.
+ */
+const LIKELY = 0.008
 
 /** Longest of these steps, in even ones. */
 const LONGEST = 6
-
-/** Optical depth of a step in clouds, where it is longer than a fine one. */
-const DEPTH_STEP = 8
 
 /** Steps in clear air longer than so many fine ones go back where they find a cloud. */
 const LOOK_BACK = 1.5
@@ -78,7 +77,7 @@ export function segmentMoments(
   const position = front.toVar() as Float
   const even = front.sub(back).div(EVEN_STEPS).toConst() as Float
   const fine = even.mul(FINE_PART).max(even.min(FINEST)).max(footprint).toConst() as Float
-  /** Length of the next steps; true if they are short because the last found a cloud. */
+  /** Length of the next steps, and true where the last two were clear. */
   const wanted = even.toVar() as Variable<Float>
   const isClear = bool(true).toVar() as Variable<Bool>
   const add = (length: Float, extinction: Float): void => {
@@ -106,21 +105,16 @@ export function segmentMoments(
       sampleAt(position.sub(length.mul(steps)).toConst(), width)
     )
     const { x, y, z: strength } = sampleLayerPair(field, layer, middle, [first, second])
-    const greatest = x.max(y).toConst()
-    const isCloudy = greatest.greaterThan(0).toConst()
+    const isCloudy = x.max(y).greaterThan(0).toConst()
     const isTooLong = length.greaterThan(fine.max(least).mul(LOOK_BACK)).and(isDeep.not())
     const isJump = isCloudy.and(isClear).and(isTooLong).toConst() as Bool
     isClear.assign(isCloudy.not())
-    wanted.assign(
-      isCloudy.select(
-        float(DEPTH_STEP).div(greatest),
-        likelyDistance(layer, strength).mul(BOLDNESS).min(even.mul(LONGEST))
-      )
-    )
+    const clear = strength.negate().max(0).mul(LIKELY).div(layer.perShapePeriod)
+    // Short ones in clouds.
+    wanted.assign(isCloudy.select(0, clear.min(even.mul(LONGEST))))
     If(isJump, () => {
       // Back to the last sample that was clear.
       position.subAssign(x.greaterThan(0).select(0, length.mul(0.5)))
-      wanted.assign(fine)
     }).Else(() => {
       add(length, x)
       add(length, y)
