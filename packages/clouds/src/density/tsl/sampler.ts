@@ -1,8 +1,8 @@
-import { If, float, int, vec3, vec4 } from 'three/tsl'
+import { If, float, int, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { hasStorms } from '../kinds'
 import type { WeatherMap } from '../WeatherMap'
-import type { Float, Int, Vec3, Vec4 } from '../../tsl-types'
+import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
 import { footprintOf, subpointOffset, zenithAt, type CloudSample } from './sample'
 import { sampleLayer, sampleLayerAt, type SampleOptions } from './sampleLayer'
@@ -131,18 +131,18 @@ export function extinctionNearby(
  * Samples a layer at two places near each other, without detail, in the weather's background in the middle
  * between them.
  *
- * @returns Extinction at both [1/m], and the greater strength of a `LayerSample` of both [–].
+ * @returns Extinction at both [1/m].
  */
 export function sampleLayerPair(
   field: CloudField,
   layer: LayerNodes,
   middle: CloudSample,
   samples: readonly [CloudSample, CloudSample]
-): Vec3 {
+): Vec2 {
   const background = backgroundAt(field, layer, middle)
   const found = sampleLayerAt(field, layer, background, middle, samples, { detail: false })
-  const [first, second] = samples.map(({ altitude }, i) =>
+  const inside = samples.map(({ altitude }, i) =>
     isWithin(layer, heightIn(layer, altitude)).select(found[i].extinction, 0)
-  ) as [Float, Float]
-  return vec3(first, second, found[0].strength.max(found[1].strength)).toConst() as Vec3
+  )
+  return vec2(...(inside as [Float, Float])).toConst()
 }

@@ -2,7 +2,6 @@ import { float, int, mix, smoothstep, vec3 } from 'three/tsl'
 import { footprintOf } from '../../density/tsl/sample'
 import { extinctionNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
-import { MOST_COUNTED } from '../../shadow/tsl/segmentMoments'
 import { loop, type Float, type Int, type Vec3 } from '../../tsl-types'
 import type { ShadedSample, ShadingContext, ShadingLight } from './shadingContext'
 
@@ -134,6 +133,6 @@ export function localDepths(
     through,
     above: above.mul(found.x.mul(ABOVE / 2).add(found.z.mul(0.5))),
     below: below.mul(found.x).mul(layered.add(1).mul(BELOW)),
-    filled: all.mul(all.min(MOST_COUNTED)).div(stretch.mul(density).max(1e-6)).add(unmapped)
+    filled: all.mul(all).div(stretch.mul(density).max(1e-6)).add(unmapped)
   }
 }

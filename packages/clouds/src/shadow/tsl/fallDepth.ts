@@ -34,6 +34,5 @@ export function fallMoments(
     const extinction = falling.extinctionAt(field, layer, sampleAt(at)).div(field.depthScale)
     sums.addAssign(vec3(1, at, at.mul(at)).mul(extinction.mul(length)))
   })
-  const depth = sums.x.toConst() as Float
-  return { sums, depth, entry: depth.greaterThan(0).select(front, NO_CLOUDS) }
+  return { sums, entry: sums.x.greaterThan(0).select(front, NO_CLOUDS) }
 }

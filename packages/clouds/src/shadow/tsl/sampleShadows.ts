@@ -2,7 +2,6 @@ import type { Vector2, Vector3, Vector4 } from 'three'
 import { If, float, mix, vec2, vec3, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import { MOST_COUNTED } from './segmentMoments'
 import { CASCADE_RATIO, MAXIMUM_DISTANCE } from './shadowRay'
 
 /** Uniforms to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane in half widths. */
@@ -98,17 +97,9 @@ export function sampleShadows(
   return { toLight, through, stretch, shadow, inMap }
 }
 
-/**
- * Share of a texel's clouds that is above a height over the cascade's plane: front and half length come times the depth, and are those of the
- * depth that counts. Clouds behind that go on in the same way.
- */
+/** Share of a texel's clouds that is above a height over the cascade's plane: front and half length come times the depth. */
 const shareAbove = ({ x: front, y: half, z: depth }: Vec4, height: Float): Float =>
-  front
-    .sub(depth.mul(height))
-    .div(half.mul(2).max(1e-6))
-    .mul(float(MOST_COUNTED).div(depth.max(MOST_COUNTED)))
-    .clamp()
-    .toConst()
+  front.sub(depth.mul(height)).div(half.mul(2).max(1e-6)).clamp().toConst()
 
 /** Optical depths at a place: texture coordinates (xy), height over the cascade's plane (z), and weight of the map there (w). */
 function depthsAt(map: CloudShadows['map'], inAtlas: Vec4): LightDepths {

@@ -7,7 +7,7 @@ import type { CloudSample } from '../../density/tsl/sample'
 import { forLayers, layerAt, type LayerNodes } from '../../density/tsl/layer'
 import { fallMoments, type ShadingFall } from './fallDepth'
 import { layerSegment, type RadialRay } from './layerSegment'
-import { NO_CLOUDS, segmentMoments, type StretchMoments } from './segmentMoments'
+import { NO_CLOUDS, segmentMoments, stepLength, type StretchMoments } from './segmentMoments'
 
 /** Uniforms of the shader that draws a cascade. Vectors are in the mapped space, from the camera [m]. */
 export interface ShadowRayUniforms {
@@ -39,6 +39,9 @@ const MOST = 15_000
 /** Footprint of samples over a cascade's texel [–]. Greater: soft shadows; smaller: grain (*Shadows*). */
 const SHARPNESS = 0.5
 
+/** Footprint of samples over a step through a layer [–]. Smaller: rings on tall clouds (*Storm*). */
+const BLUR = 0.35
+
 /** Footprint of samples over the path through precipitation [–]. Greater: soft shadows of shafts (*Rain and snow*). */
 const FALL_BLUR = 0.03
 
@@ -48,12 +51,12 @@ interface LightRay extends RadialRay {
   readonly start: Vec3
   /** Distance to which clouds are looked for, to either side of the plane [m]. */
   readonly maximumDistance: Float
-  /** Width of what a sample stands for at least [m]. */
-  readonly footprint: Float
+  /** Distance from the camera that has the right level of detail [m]. */
+  readonly distance: Float
 }
 
 /** The ray of the texel that is drawn. */
-function lightRay({ view, radius }: CloudField, ray: ShadowRayUniforms): LightRay {
+function lightRay({ view, radius, pixelAngle }: CloudField, ray: ShadowRayUniforms): LightRay {
   const at = uv().sub(0.5) as unknown as Vec2
   const start = ray.origin.add(ray.across.mul(at.x)).add(ray.along.mul(at.y)).toConst() as Vec3
   const radiusHere = radius.add(view.height).toConst()
@@ -66,8 +69,9 @@ function lightRay({ view, radius }: CloudField, ray: ShadowRayUniforms): LightRa
     .add(start.dot(ray.toLight))
     .toConst() as Float
   const maximumDistance = ray.halfWidth.mul(MAXIMUM_DISTANCE).toConst() as Float
-  const footprint = ray.halfWidth.mul((2 * SHARPNESS) / ray.size).toConst() as Float
-  return { start, radial, height, maximumDistance, footprint }
+  const footprint = ray.halfWidth.mul((2 * SHARPNESS) / ray.size)
+  const distance = footprint.div(pixelAngle).toConst() as Float
+  return { start, radial, height, maximumDistance, distance }
 }
 
 /**
@@ -85,10 +89,8 @@ function lightRay({ view, radius }: CloudField, ray: ShadowRayUniforms): LightRa
 export function shadowRay(field: CloudField, ray: ShadowRayUniforms, falling?: ShadingFall): Vec4 {
   return Fn(() => {
     const texel = lightRay(field, ray)
-    const sampleAt = (at: Float, footprint: Float): CloudSample => {
+    const sampleAt = (at: Float, distance: Float): CloudSample => {
       const offset = texel.start.add(ray.toLight.mul(at)).toConst() as Vec3
-      // The distance that has the level of detail.
-      const distance = footprint.div(field.pixelAngle).toConst() as Float
       return { offset, ...field.view.localCoordinates(offset), distance }
     }
     /** Means of 1, place on the ray, and its square, times the layers' weights. */
@@ -97,25 +99,35 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms, falling?: S
     const depths = vec2(0).toVar() as Vec2
     /** Distance at which the first cloud begins, from the light. */
     const first = float(NO_CLOUDS).toVar()
-    const add = ({ sums, depth, entry }: StretchMoments, layer: LayerNodes): void => {
+    const add = ({ sums, entry }: StretchMoments, layer: LayerNodes): void => {
       first.assign(first.max(entry))
+      const depth = sums.x.toConst() as Float
       weighted.addAssign(sums.mul(depth))
       depths.addAssign(vec2(depth, depth.mul(layer.shadow)))
     }
+    /** Distance that samples stand for whose footprint is a part of a length. */
+    const blurred = (length: Float, blur: number): Float =>
+      texel.distance.max(length.mul(blur).div(field.pixelAngle)).toConst()
     forLayers(field, index => {
       const layer = layerAt(field, index)
       const segment = layerSegment(field, layer, texel, texel.maximumDistance)
       If(segment.front.greaterThan(segment.back).and(layer.coverage.greaterThan(0)), () => {
-        add(segmentMoments(field, layer, segment, texel.footprint, sampleAt), layer)
+        const length = stepLength(segment)
+        // What is shorter than steps would show as rings.
+        const distance = blurred(length, BLUR)
+        add(
+          segmentMoments(field, layer, segment, length, at => sampleAt(at, distance)),
+          layer
+        )
       })
       if (falling === undefined) return
       const below = { baseAltitude: float(0), thickness: falling.ceiling }
       const fall = layerSegment(field, below, texel, texel.maximumDistance)
       const way = fall.front.sub(fall.back).toConst() as Float
       If(way.greaterThan(0).and(falling.ceiling.greaterThan(0)), () => {
-        const width = texel.footprint.max(way.mul(FALL_BLUR)).toConst() as Float
+        const distance = blurred(way, FALL_BLUR)
         add(
-          fallMoments(field, falling, layer, fall, at => sampleAt(at, width)),
+          fallMoments(field, falling, layer, fall, at => sampleAt(at, distance)),
           layer
         )
       })
