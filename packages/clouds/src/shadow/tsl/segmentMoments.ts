@@ -29,12 +29,12 @@ const CUTS = 2
 const SEARCHES = 4
 
 /**
- * Length of the steps on a segment [m]: powers of two in whole and in half, so that rays side by side, whose segments differ by little, have
+ * Length of the steps on a segment [m]: four to an octave, so that rays side by side, whose segments differ by little, have
  * the same. Even parts of segments: under a low sun, towers have bands of light and shade, each a step high (*Storm*).
  */
 export function stepLength({ front, back }: LayerSegment): Float {
   const octaves = front.sub(back).div(STEPS).max(1e-3).log2()
-  return octaves.mul(2).ceil().div(2).exp2().toConst() as Float
+  return octaves.mul(4).ceil().div(4).exp2().toConst() as Float
 }
 
 /** The search for the edge of a cloud between a clear place and one in it. */
