@@ -18,7 +18,7 @@ export interface StretchMoments {
 export const NO_CLOUDS = -1e9
 
 /** Samples of a ray through a layer. Fewer: bands in the shadows of thin clouds under a low sun (*Shadows*). */
-export const STEPS = 56
+export const STEPS = 48
 
 /**
  * Steps longer than this are cut in three to find where clouds begin [m]; how often, and on a ray. Without,
@@ -26,16 +26,7 @@ export const STEPS = 56
  */
 const SEARCH_FROM = 100
 const CUTS = 2
-const SEARCHES = 4
-
-/**
- * Length of the steps on a segment [m]: four to an octave, so that rays side by side, whose segments differ by little, have
- * the same. Even parts of segments: under a low sun, towers have bands of light and shade, each a step high (*Storm*).
- */
-export function stepLength({ front, back }: LayerSegment): Float {
-  const octaves = front.sub(back).div(STEPS).max(1e-3).log2()
-  return octaves.mul(4).ceil().div(4).exp2().toConst() as Float
-}
+const SEARCHES = 2
 
 /** The search for the edge of a cloud between a clear place and one in it. */
 interface EdgeSearch {
@@ -56,7 +47,7 @@ interface Assignable<T> {
  * Optical depth of a layer on a segment, its moments, and where it begins: a march from the
  * side of the light, in pairs of samples that share weather.
  *
- * @param length - Length of a step, one of `stepLength` [m].
+ * @param length - Length of a step [m].
  * @param sampleAt - The ray's sample at a distance.
  */
 export function segmentMoments(
@@ -69,18 +60,16 @@ export function segmentMoments(
   const sums = vec3(0).toVar() as Vec3
   const entry = float(NO_CLOUDS).toVar()
   const add = (top: Float, extinction: Float): void => {
-    const [from, to] = [top.min(front), top.sub(length).max(back)]
-    const width = from.sub(to).max(0).toConst() as Float
-    const middle = from.sub(width.mul(0.5)).toConst() as Float
+    const width = top.sub(back).clamp(0, length).toConst() as Float
+    const middle = top.sub(width.mul(0.5)).toConst() as Float
     const square = middle.mul(middle).add(width.mul(width).div(12))
     sums.addAssign(vec3(1, middle, square).mul(extinction.mul(width)))
     entry.assign(extinction.greaterThan(0).select(entry.max(top), entry))
   }
-  // Rays side by side step in line.
-  const position = front.div(length).ceil().mul(length).toVar() as Float
-  const search = edgeSearch(position, length)
+  const position = front.toVar() as Float
+  const search = edgeSearch(front, length)
   const wasClear = bool(true).toVar() as Bool
-  loop('shadowPair', STEPS / 2 + 1 + SEARCHES * (CUTS + 2), () => {
+  loop('shadowPair', STEPS / 2 + SEARCHES * (CUTS + 2), () => {
     If(position.lessThanEqual(back), () => {
       Break()
     })
@@ -115,9 +104,9 @@ export function segmentMoments(
 }
 
 /** No search yet: short steps need none. */
-const edgeSearch = (from: Float, length: Float): EdgeSearch => ({
-  clear: from.toVar(),
-  cloudy: from.toVar(),
+const edgeSearch = (front: Float, length: Float): EdgeSearch => ({
+  clear: front.toVar(),
+  cloudy: front.toVar(),
   cuts: int(0).toVar(),
   searches: int(length.greaterThan(SEARCH_FROM).select(SEARCHES, 0)).toVar()
 })

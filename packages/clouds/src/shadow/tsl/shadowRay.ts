@@ -7,7 +7,7 @@ import type { CloudSample } from '../../density/tsl/sample'
 import { forLayers, layerAt, type LayerNodes } from '../../density/tsl/layer'
 import { fallMoments, type ShadingFall } from './fallDepth'
 import { layerSegment, type RadialRay } from './layerSegment'
-import { NO_CLOUDS, segmentMoments, stepLength, type StretchMoments } from './segmentMoments'
+import { NO_CLOUDS, segmentMoments, STEPS, type StretchMoments } from './segmentMoments'
 
 /** Uniforms of the shader that draws a cascade. Vectors are in the mapped space, from the camera [m]. */
 export interface ShadowRayUniforms {
@@ -111,8 +111,8 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms, falling?: S
     forLayers(field, index => {
       const layer = layerAt(field, index)
       const segment = layerSegment(field, layer, texel, texel.maximumDistance)
-      If(segment.front.greaterThan(segment.back).and(layer.coverage.greaterThan(0)), () => {
-        const length = stepLength(segment)
+      const length = segment.front.sub(segment.back).max(0).div(STEPS).toConst() as Float
+      If(length.greaterThan(0).and(layer.coverage.greaterThan(0)), () => {
         // What is shorter than steps would show as rings.
         const distance = blurred(length, BLUR)
         add(
