@@ -4,7 +4,6 @@ import { describe, expect, it } from 'vitest'
 import { cloudPreset } from '../../src'
 import { stormFibres, stormPlaces } from '../../src/density/stormForm'
 import { stormCell } from '../../src/layers/storms'
-import type { Vec3Array } from '../twins/noise'
 import { stormAround, stormGaps } from '../twins/storm'
 
 const layer = cloudPreset('cumulonimbus').at(0).parameters
@@ -20,7 +19,7 @@ describe('stormAround', () => {
           new Vector3(-up.y, up.x, 0),
           Math.sin(side)
         )
-        const { anvil } = stormGaps(from as Vec3Array, up, new Vector3())
+        const { anvil } = stormGaps(from, up, new Vector3())
         // Without shear its tower stands in the middle of an anvil.
         const tower = anvil.projectOnPlane(up).divideScalar(stormPlaces.cells)
         const cell = stormCell(layer)
