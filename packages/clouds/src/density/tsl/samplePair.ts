@@ -93,8 +93,8 @@ export function samplePair(
           const footprint = footprintOf(field, middle)
           const found = likelyDistanceByBackground(layer, background, height, footprint)
           // Farther down, weaker columns are clouds.
-          const fall = direction.dot(middle.up).negate().max(1e-3)
-          likely.assign(found.min(layer.thickness.mul(FALL).div(fall)))
+          const rise = direction.dot(middle.up).min(-1e-3)
+          likely.assign(found.min(layer.thickness.mul(-FALL).div(rise)))
         }
       )
       likely.mulAssign(field.skipping.floor())

@@ -30,7 +30,7 @@ export function fibrePlace(axis: Vec3, fromTower: Vec3, zenith: Vec3, cell: Floa
   const distance = outward.length().toConst() as Float
   return (
     outward
-      .mul(distance.max(core).reciprocal().mul(around))
+      .div(distance.max(core).div(around))
       // Each storm has its own. Whole cells: the lattice may be wrapped.
       .add(axis)
       .add(zenith.mul(distance.mul(cell).div(outwards)))
