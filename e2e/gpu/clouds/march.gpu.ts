@@ -123,3 +123,54 @@ gpuTest(
   },
   { backends: ['webgpu'] }
 )
+
+gpuTest(
+  'rays from above find small clouds below the layer of storms',
+  async t => {
+    const layers = cloudPreset('cumulonimbus')
+    const place = { longitude: 139.571, latitude: 35.995, height: 7000 }
+    const scene = await cloudScene(t, layers, place)
+    const { field } = scene
+    field.pixelAngle.value = 9.6e-4
+    const light = new CloudLightTable()
+    light.bake()
+    field.depthScale.value = light.nodes.depthScale.value
+    scene.update(300)
+    const next = random(7)
+    /** Azimuth from north and elevation [rad], and the jitter. */
+    const rays = Array.from({ length: 250 }, () => [
+      (25 * next() - 22) * (Math.PI / 180),
+      (8 * next() - 26) * (Math.PI / 180),
+      next(),
+      0
+    ])
+    const quality = new QualityUniforms()
+    const { up } = field.view
+    const opacities = async (of: CloudQuality, skipping: number): Promise<number[]> => {
+      quality.set(of)
+      field.skipping.value = skipping
+      const found = await evaluateOnGpu(scene.renderer, rays, ({ x, y, z }) => {
+        const east = vec3(0, 0, 1).cross(up).normalize().toConst()
+        const north = up.cross(east).toConst()
+        const level = north.mul(x.cos()).add(east.mul(x.sin()))
+        const direction = level.mul(y.cos()).add(up.mul(y.sin())).normalize().toConst()
+        const ray = { direction, end: float(3e4), jitter: z }
+        return vec4(
+          marchClouds({ field, light: light.nodes, quality }, ray).transmittance.oneMinus()
+        )
+      })
+      return rays.map((_, i) => found[4 * i])
+    }
+    const expected = await opacities(fine, FINE_SKIPPING)
+    const got = await opacities(high, 1)
+    const missed = mean(got.map((opacity, i) => Math.max(expected[i] - opacity, 0)))
+    const more = mean(got.map((opacity, i) => Math.max(opacity - expected[i], 0)))
+    t.note(`cover ${mean(expected).toFixed(3)}, missed ${missed}, more ${more}`)
+    expectTrue(mean(expected) > 0.4, 'there are clouds')
+    expectTrue(missed < 0.05, `rays miss ${missed} of the sky`)
+    expectTrue(more < 0.05, `rays meet clouds in ${more} of the sky that is clear`)
+    light.dispose()
+    scene.dispose()
+  },
+  { backends: ['webgpu'] }
+)

@@ -67,6 +67,8 @@ export const stormIce = {
 export const stormFibres = {
   /** Periods of the shape's noise in a radian about the tower. More: narrower fibres. */
   around: 2,
+  /** Distance from the tower within which fibres are no narrower than there [cells]. 0: they burst from a point, where a storm has no tower (*Storm*). */
+  core: 0.15,
   /** Length of a period outwards, and upwards [m]: fibres sink by the ratio of both as they go. Shorter outwards: heads, not fibres. */
   outwards: 24_000,
   upwards: 4000,

@@ -31,6 +31,7 @@ const congestus: Partial<CloudLayerParameters> = {
   coverage: 0.25,
   weatherScale: 1.2,
   shapeScale: 0.8,
+  shapeAmount: 0.75,
   turbulence: 0.5,
   wind: { east: 9, north: 3 }
 }
@@ -139,6 +140,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       ...congestus,
       weatherScale: 0.6,
       shapeScale: 0.6,
+      shapeAmount: 1,
       precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 }
     }
   ],

@@ -39,7 +39,7 @@ function axisDistance(gap: Vector3, up: Vector3): number {
  * @param downwind - Displacement of a storm's anvil from its tower [cells].
  * @returns Displacements to the axes of the nearest anvil and of the nearest tower.
  */
-function stormGaps(
+export function stormGaps(
   place: Vec3Array,
   up: Vector3,
   downwind: Vector3
@@ -99,7 +99,7 @@ export function stormAround(
   const outward = aside.clone().sub(anvil).projectOnPlane(up)
   const fibrePlace = outward
     .clone()
-    .setLength(stormFibres.around)
+    .setLength(stormFibres.around * Math.min(outward.length() / stormFibres.core, 1))
     .add(axis)
     .addScaledVector(up, (outward.length() * stormCell(layer)) / stormFibres.outwards)
   return {

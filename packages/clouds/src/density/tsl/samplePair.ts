@@ -31,6 +31,12 @@ export interface SamplePair {
   readonly greatest: Float
 }
 
+/**
+ * Way down for which a background's likely distance holds at most, over the layer's thickness. Greater: rays from above jump over small
+ * clouds where there is more than one layer, as dots (*Storm*).
+ */
+const FALL = 0.1
+
 /** Distances up to which each layer is likely clear [m]: until there it is not sampled with the other layers. */
 export type ClearLayers = Variable<Vec4>
 
@@ -85,7 +91,10 @@ export function samplePair(
         },
         () => {
           const footprint = footprintOf(field, middle)
-          likely.assign(likelyDistanceByBackground(layer, background, height, footprint))
+          const found = likelyDistanceByBackground(layer, background, height, footprint)
+          // Farther down, weaker columns are clouds.
+          const rise = direction.dot(middle.up).min(-1e-3)
+          likely.assign(found.min(layer.thickness.mul(-FALL).div(rise)))
         }
       )
       likely.mulAssign(field.skipping.floor())

@@ -25,12 +25,12 @@ export interface AnvilAround {
  * @param cell - Length of a cell [m].
  */
 export function fibrePlace(axis: Vec3, fromTower: Vec3, zenith: Vec3, cell: Float): Vec3 {
-  const { around, outwards } = stormFibres
+  const { around, core, outwards } = stormFibres
   const outward = fromTower.sub(zenith.mul(fromTower.dot(zenith))).toConst() as Vec3
-  const distance = outward.length().max(1e-6).toConst() as Float
+  const distance = outward.length().toConst() as Float
   return (
     outward
-      .mul(distance.reciprocal().mul(around))
+      .div(distance.max(core).div(around))
       // Each storm has its own. Whole cells: the lattice may be wrapped.
       .add(axis)
       .add(zenith.mul(distance.mul(cell).div(outwards)))
