@@ -4,11 +4,22 @@ import type { Table } from '../../tables/TableAtlas'
 import { RADIANCE_SCALE } from '../../tables/tableSizes'
 import type { Float, Vec4 } from '../../tsl-types'
 import { diffuseLightReader, diffuseMoments } from './diffuseLight'
-import { applyMoments, momentBasis } from './moments'
+import { applyMoments, momentBasis, type Moments } from './moments'
 
 /** A₁/A₀ and A₂/A₀ of the clamped cosine. */
 const COSINE_1 = 2 / 3
-const COSINE_2 = 1 / 4
+export const COSINE_2 = 1 / 4
+
+/** Irradiance of a plane by moments of the light about it. */
+export const cosineLobe = (
+  moments: Moments<Vec4>,
+  cosNormal: Float,
+  cosLight: Float,
+  cosNormalLight: Float
+): Vec4 =>
+  applyMoments(moments, momentBasis(cosNormal, cosLight, cosNormalLight), COSINE_1, COSINE_2).mul(
+    Math.PI
+  )
 
 /**
  * Diffuse irradiance on a plane, for unit irradiance of the light source.
@@ -38,9 +49,7 @@ export function skyIrradiance(
   const down = read(7).toConst()
   const horizontal = facesUp.select(float(1), float(-1)).toConst() as Float
   const lobe = (cosine: Float, cosineLight: Float): Vec4 =>
-    applyMoments(moments, momentBasis(cosine, cosLight, cosineLight), COSINE_1, COSINE_2).mul(
-      Math.PI
-    )
+    cosineLobe(moments, cosine, cosLight, cosineLight)
   const approximate = lobe(horizontal, horizontal.mul(cosLight))
   const missing = facesUp.select(up, down).sub(approximate)
   return lobe(cosNormal, cosNormalLight)
