@@ -42,8 +42,8 @@ export function skyIrradiance(
   cosLight: Float,
   cosNormalLight: Float
 ): Vec4 {
-  const moments = diffuseMoments(uniforms, table, altitude, cosLight)
   const read = diffuseLightReader(uniforms, table, altitude, cosLight)
+  const moments = diffuseMoments(uniforms, table, altitude, cosLight)
   const facesUp = cosNormal.greaterThanEqual(0).toConst()
   const up = read(6).toConst()
   const down = read(7).toConst()

@@ -13,10 +13,10 @@ type FourColumns = [Vec4, Vec4, Vec4, Vec4]
 function upwardMoments(view: ViewNodes, position: Vec3): Moments<Vec4> {
   const { uniforms, diffuse } = view.air
   const { altitude, cosLight } = view.localCoordinates(view.toMapped(position).toConst())
+  const read = diffuseLightReader(uniforms, diffuse!, altitude, cosLight)
   const moments = diffuseMoments(uniforms, diffuse!, altitude, cosLight)
-  const up = diffuseLightReader(uniforms, diffuse!, altitude, cosLight)(6)
   // What level planes lack grows with the cosine's square, which is a part of two of the moments' functions.
-  const missing = up.sub(cosineLobe(moments, float(1), cosLight, cosLight)).div(3 * Math.PI)
+  const missing = read(6).sub(cosineLobe(moments, float(1), cosLight, cosLight)).div(3 * Math.PI)
   const { m00, m20 } = moments
   return {
     ...moments,
