@@ -7,7 +7,6 @@ import { checkSource, type LightSource } from '../view/LightSource'
 import { linearSRGB } from '../air/tsl/color'
 import { coveredPosition } from '../view/tsl/coveredPosition'
 import { skyIrradiance } from '../diffuseLight/tsl/skyIrradiance'
-import type { FineMaterial } from '../sky/AerialPerspectiveFogNode'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import type { ViewNodes } from '../view/ViewNodes'
 import { checkAtmosphere, viewNodes } from '../view/ViewNodes'
@@ -99,17 +98,21 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
   }
 
   override setup(builder: NodeBuilder): undefined {
-    const irradiance = Fn(({ material }: NodeBuilder) => {
+    const irradiance = Fn(() => {
       const view = this.#view
       const { air } = view
       const offset = view.toMapped(coveredPosition()).toConst()
       const { altitude, cosLight, up } = view.localCoordinates(offset)
       const normal = view.toMapped(normalView).normalize().toConst()
       const cosNormal = normal.dot(up)
-      const cosines = [cosNormal, cosLight, normal.dot(view.lightDirection)] as const
-      const clear =
-        (material as FineMaterial).lightAtVertices?.sky(view, ...cosines) ??
-        skyIrradiance(air.uniforms, air.diffuse!, altitude, ...cosines)
+      const clear = skyIrradiance(
+        air.uniforms,
+        air.diffuse!,
+        altitude,
+        cosNormal,
+        cosLight,
+        normal.dot(view.lightDirection)
+      )
       const plane = { view, offset, altitude, up, cosLight, cosNormal }
       const received = this.#light.overcast?.(plane, clear) ?? clear
       return linearSRGB(air.uniforms, received.mul(view.source.irradiance)).mul(

@@ -1,13 +1,12 @@
 import { DirectionalLight, Vector3 } from 'three'
 import { Fn } from 'three/tsl'
 import { DirectionalLightNode, NodeUpdateType } from 'three/webgpu'
-import type { NodeBuilder, NodeFrame } from 'three/webgpu'
+import type { NodeFrame } from 'three/webgpu'
 import { checkPositive } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkSource, type LightSource } from '../view/LightSource'
 import { linearSRGB } from '../air/tsl/color'
 import { coveredPosition } from '../view/tsl/coveredPosition'
-import type { FineMaterial } from '../sky/AerialPerspectiveFogNode'
 import { lightTransmittance } from '../transmittance/tsl/transmittance'
 import type { Vec3 } from '../tsl-types'
 import type { ViewNodes } from '../view/ViewNodes'
@@ -91,19 +90,13 @@ export class SunDirectionalLightNode extends DirectionalLightNode {
     this.updateType = NodeUpdateType.RENDER
     const node = this as unknown as { colorNode: Vec3 }
     const tint = node.colorNode
-    const view = this.#view
-    const { uniforms, transmittance } = view.air
-    const sunlightAt = (position: Vec3): Vec3 => {
-      const { altitude, cosLight } = view.localCoordinates(view.toMapped(position).toConst())
+    node.colorNode = Fn(() => {
+      const { uniforms, transmittance } = this.#view.air
+      const offset = this.#view.toMapped(coveredPosition()).toConst()
+      const { altitude, cosLight } = this.#view.localCoordinates(offset)
       const sunlight = lightTransmittance(uniforms, transmittance, altitude, cosLight)
-      return linearSRGB(uniforms, sunlight.mul(view.source.irradiance))
-    }
-    node.colorNode = Fn(({ material }: NodeBuilder) =>
-      (
-        (material as FineMaterial).lightAtVertices?.sun(view, sunlightAt) ??
-        sunlightAt(coveredPosition())
-      ).mul(tint)
-    )()
+      return linearSRGB(uniforms, sunlight.mul(this.#view.source.irradiance)).mul(tint)
+    })()
   }
 
   override updateBefore(frame: NodeFrame): undefined {

@@ -6,14 +6,11 @@ import { AtmosphereNode } from '../view/AtmosphereNode'
 import { coveredPosition } from '../view/tsl/coveredPosition'
 import { aerialPerspectiveTo } from './tsl/aerialPerspective'
 import type { airAtVertices } from './tsl/airAtVertices'
-import type { lightAtVertices } from './tsl/lightAtVertices'
 
 /** Material whose triangles are small beside their distance everywhere, such as a terrain's. */
 export interface FineMaterial {
   /** `airAtVertices` has the effect of clear air found at vertices, not pixels, within 200 to 1,000 km by the viewer's height. */
   readonly airAtVertices?: typeof airAtVertices
-  /** `lightAtVertices` has the same effect on clear light of sun and sky. */
-  readonly lightAtVertices?: typeof lightAtVertices
 }
 
 /**

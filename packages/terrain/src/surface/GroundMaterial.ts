@@ -1,4 +1,4 @@
-import { airAtVertices, coveredPosition, lightAtVertices, type FineMaterial } from '@welkin/atmosphere'
+import { airAtVertices, coveredPosition } from '@welkin/atmosphere'
 import {
   BRDF_GGX,
   Fn,
@@ -148,7 +148,6 @@ export class GroundMaterial extends MeshStandardNodeMaterial {
 
   /** See `FineMaterial` of `@welkin/atmosphere`: cells are small beside their distance. */
   readonly airAtVertices = airAtVertices
-  readonly lightAtVertices: FineMaterial['lightAtVertices'] = lightAtVertices
 
   /** Normal of the ground without its stones, view space; null for the normal of the pixel. */
   ground: Vec3 | null = null

@@ -4,22 +4,11 @@ import type { Table } from '../../tables/TableAtlas'
 import { RADIANCE_SCALE } from '../../tables/tableSizes'
 import type { Float, Vec4 } from '../../tsl-types'
 import { diffuseLightReader, diffuseMoments } from './diffuseLight'
-import { applyMoments, momentBasis, type Moments } from './moments'
+import { applyMoments, momentBasis } from './moments'
 
 /** A₁/A₀ and A₂/A₀ of the clamped cosine. */
 const COSINE_1 = 2 / 3
-export const COSINE_2 = 1 / 4
-
-/** Irradiance of a plane by moments of the light about it. */
-export const cosineLobe = (
-  moments: Moments<Vec4>,
-  cosNormal: Float,
-  cosLight: Float,
-  cosNormalLight: Float
-): Vec4 =>
-  applyMoments(moments, momentBasis(cosNormal, cosLight, cosNormalLight), COSINE_1, COSINE_2).mul(
-    Math.PI
-  )
+const COSINE_2 = 1 / 4
 
 /**
  * Diffuse irradiance on a plane, for unit irradiance of the light source.
@@ -42,14 +31,16 @@ export function skyIrradiance(
   cosLight: Float,
   cosNormalLight: Float
 ): Vec4 {
-  const read = diffuseLightReader(uniforms, table, altitude, cosLight)
   const moments = diffuseMoments(uniforms, table, altitude, cosLight)
+  const read = diffuseLightReader(uniforms, table, altitude, cosLight)
   const facesUp = cosNormal.greaterThanEqual(0).toConst()
   const up = read(6).toConst()
   const down = read(7).toConst()
   const horizontal = facesUp.select(float(1), float(-1)).toConst() as Float
   const lobe = (cosine: Float, cosineLight: Float): Vec4 =>
-    cosineLobe(moments, cosine, cosLight, cosineLight)
+    applyMoments(moments, momentBasis(cosine, cosLight, cosineLight), COSINE_1, COSINE_2).mul(
+      Math.PI
+    )
   const approximate = lobe(horizontal, horizontal.mul(cosLight))
   const missing = facesUp.select(up, down).sub(approximate)
   return lobe(cosNormal, cosNormalLight)
