@@ -50,7 +50,7 @@ const CALMEST = 0.25
  * @param climate - Noise about 0.
  */
 export const windyVariance = (seaVariance: Float, climate: Float): Float =>
-  seaVariance.mul(climate.mul(WINDY).add(1).max(CALMEST)).toConst('windyVariance')
+  seaVariance.mul(climate.mul(WINDY).add(1).max(CALMEST)).toConst()
 
 /** A place of the sea. */
 export interface SeaPlace {
@@ -77,9 +77,9 @@ type Variable = Vec4 & { assign(value: Vec4): void; addAssign(value: Vec4): void
 export function seaSurface(place: SeaPlace, seaVariance: Float, seconds: Float): SeaSurface {
   const { offset, depth, up, footprint, spread } = place
   const shallow = spread.mul(SHALLOW_SPREAD).max(SHALLOW)
-  const cover = smoothstep(0, shallow, depth).toConst('cover')
+  const cover = smoothstep(0, shallow, depth).toConst()
   const waves = Fn(() => {
-    const sum = vec4(0).toVar('waves') as unknown as Variable
+    const sum = vec4(0).toVar() as unknown as Variable
     // From afar no wave is kept.
     If(cover.greaterThan(0).and(footprint.lessThan(LONGEST_KEPT)), () => {
       const steepest = seaVariance.sqrt().mul(WAVE_SLOPE).toConst()
@@ -99,7 +99,7 @@ export function seaSurface(place: SeaPlace, seaVariance: Float, seconds: Float):
       sum.assign(vec4(gradientAlong(sum.xyz, up), sum.w))
     })
     return sum
-  })().toConst('sea') as unknown as Vec4
+  })().toConst() as unknown as Vec4
   return { cover, slope: waves.xyz.mul(cover), variance: seaVariance.sub(waves.w) }
 }
 
