@@ -5,11 +5,11 @@ import { GRAIN_SLOPE } from '../grainTexture'
 import { frameNear, pieceOf, tilingVertices } from './stochasticTiling'
 
 /** Sides of the picture on the ground [m], and longer side of a pixel's footprint at which nothing is left [m]. */
-const COARSE = { side: 17, gone: 1.1 }
+const COARSE = { side: 17, gone: 1 }
 const FINE = { side: 2.1, gone: 0.14 }
 
 /** Crowns and outcrops, where single stones are too small to be seen: footprints between which they come, and go [m]. */
-const CANOPY = { side: 150, from: 0.22, to: 0.7, fades: 5, gone: 10 }
+const CANOPY = { side: 150, from: 0.35, to: 0.8, fades: 5, gone: 10 }
 
 /** Footprint at which the slopes of all stones are smaller than a pixel [m]. */
 const LOST = 0.075
