@@ -50,7 +50,10 @@ const sources: Record<string, () => HeightSource | PageSource> = {
     new TerrariumTiles('memory:{z}/{x}/{y}', {
       maxZoom: 12,
       loadPixels: url => {
-        const [z, x, y] = url.slice(url.indexOf(':') + 1).split('/').map(Number)
+        const [z, x, y] = url
+          .slice(url.indexOf(':') + 1)
+          .split('/')
+          .map(Number)
         const data = new Uint8ClampedArray(4 * TILE ** 2)
         for (let i = 0; i < TILE ** 2; i++) {
           const along = (2 * Math.PI * (x + (i % TILE) / TILE)) / 2 ** z

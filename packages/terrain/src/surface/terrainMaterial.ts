@@ -113,9 +113,7 @@ export function terrainMaterial(
   // Two components of a vector along the ellipsoid tell the third.
   const outward = first.cross(second).toConst()
   const along = first.mul(ground.x).add(second.mul(ground.y)).toConst()
-  const gradient = along
-    .sub(outward.mul(along.dot(up).div(outward.dot(up))))
-    .toConst() as Vec3
+  const gradient = along.sub(outward.mul(along.dot(up).div(outward.dot(up)))).toConst() as Vec3
   const cosSlope = gradient.dot(gradient).add(1).inverseSqrt().toConst() as Float
   const normal = up.sub(gradient).normalize().toConst() as Vec3
   const surface = groundSurface(

@@ -123,10 +123,7 @@ export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimat
   const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign()) as unknown as Float
   const snowLine = zone.x.add(climate.mul(DRY_SNOW)).add(sunny.mul(SUNNY_SNOW)).toConst()
   const overSnow = height.sub(snowLine).toConst() as Float
-  const overTrees = overSnow
-    .add(TREES_BELOW)
-    .add(patch.mul(TREES_PATCH))
-    .toConst() as Float
+  const overTrees = overSnow.add(TREES_BELOW).add(patch.mul(TREES_PATCH)).toConst() as Float
   const dryness = zone.y.add(climate.mul(DRY_CLIMATE)).clamp(0, 1).toConst() as Float
   const lowland = smoothstep(...LOWLAND, overSea)
     .oneMinus()
