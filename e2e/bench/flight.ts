@@ -69,7 +69,7 @@ const sources: Record<string, () => HeightSource | PageSource> = {
 /** Time until a picture is full. */
 export interface FirstPicture {
   source: string
-  /** From a new terrain, frame after frame, wall-clock [ms]. */
+  /** Wall-clock time from a new terrain on, frame after frame [ms]. */
   ms: number
   frames: number
 }
