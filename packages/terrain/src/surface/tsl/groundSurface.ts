@@ -17,6 +17,9 @@ const DRY_GRASS = 1.5
 /** Slopes of shrubs over those of crowns [–]. 1: from eye height shrubs in a meadow are black wedges (*Terrain*, still grass). */
 const SHRUB_RELIEF = 0.4
 
+/** Slopes of sand over those of stones [–]. 0.05: a beach is of flat shards (*Terrain*, still shore). */
+const SAND_BUMP = 0.02
+
 /** Mean square of the slopes of stones. */
 const GRAIN_VARIANCE = 0.3
 
@@ -124,7 +127,7 @@ export function groundSurface(
   const stones = color(SCREE).mul(tone.mul(0.6).add(1).clamp(0.4, 1.3))
   const scree = mix(stones, color(TUNDRA), turfed.mul(0.75)).mul(stony)
   const tangle = blade.add(boulder.mul(0.3)).toConst() as Float
-  const sand = color(SAND).mul(stone.mul(0.1).add(patch.mul(0.35)).add(1))
+  const sand = color(SAND).mul(stone.mul(0.03).add(tuft.mul(0.06)).add(patch.mul(0.35)).add(1))
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.06))).toConst()
   const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
   const mapped = maps?.groundAt(place, layers, colors)
@@ -136,7 +139,7 @@ export function groundSurface(
 
   // Stones stand out of rock and scree, hardly out of grass, sand and snow.
   const stoniness = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
-  const ownBump = mix(float(0.05), stoniness, inland.max(bare)).mul(snow.mul(-0.96).add(1))
+  const ownBump = mix(float(SAND_BUMP), stoniness, inland.max(bare)).mul(snow.mul(-0.96).add(1))
   const bump = either(ownBump, () => float(0)).toConst()
   const ownRough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
   const rough = either(ownRough, ({ roughness }) => roughness.mul(wet.mul(0.37).add(0.63)))
