@@ -14,9 +14,6 @@ import {
 /** Dry grass per climate: steppe is straw, wet country green. Less: land from orbit is of one colour (*Terrain*). */
 const DRY_GRASS = 1.5
 
-/** Slopes of shrubs over those of crowns [–]. 1: from eye height shrubs in a meadow are black wedges (*Terrain*, still grass). */
-const SHRUB_RELIEF = 0.4
-
 /** Slopes of sand over those of stones [–]. 0.05: a beach is of flat shards (*Terrain*, still shore). */
 const SAND_BUMP = 0.02
 
@@ -152,7 +149,7 @@ export function groundSurface(
       .mul(2 * GRAIN_VARIANCE)
   )
   const leafy = woods
-    .max(shrubs.mul(SHRUB_RELIEF))
+    .max(shrubs)
     .mul(bare.max(bareness).max(dryness).max(snow).oneMinus())
     .mul(inland)
   const raised = mix(mix(bump.mul(0.55).max(0.06), float(0.7), leafy), float(0.06), snow).toConst(
