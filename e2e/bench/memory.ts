@@ -19,11 +19,12 @@ const TEXEL_BYTES: Partial<Record<GPUTextureFormat, number>> = {
   rg16float: 4,
   rgba16float: 8,
   r32float: 4,
+  rg32float: 8,
   rgba32float: 16
 }
 
 /** Bytes of a texture, its levels of detail included. */
-function bytesOf(texture: GPUTexture): number {
+export function bytesOf(texture: GPUTexture): number {
   const bytes = TEXEL_BYTES[texture.format]
   if (bytes === undefined) throw new Error(`bench: no size is known of ${texture.format}`)
   let sum = 0
@@ -44,7 +45,7 @@ const KINDS = {
 }
 
 /** Keeps a list of the textures that a device has at present. */
-function watchTextures(device: GPUDevice): Set<GPUTexture> {
+export function watchTextures(device: GPUDevice): Set<GPUTexture> {
   const alive = new Set<GPUTexture>()
   const create = device.createTexture.bind(device)
   device.createTexture = descriptor => {

@@ -102,7 +102,8 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
       const view = this.#view
       const { air } = view
       const offset = view.toMapped(coveredPosition()).toConst()
-      const { altitude, cosLight, up } = view.localCoordinates(offset)
+      const place = view.localCoordinates(offset)
+      const { altitude, cosLight, up } = place
       const normal = view.toMapped(normalView).normalize().toConst()
       const cosNormal = normal.dot(up)
       const clear = skyIrradiance(
@@ -113,16 +114,14 @@ export class SkyLightProbeNode extends AnalyticLightNode<SkyLightProbe> {
         cosLight,
         normal.dot(view.lightDirection)
       )
-      const plane = { view, offset, altitude, up, cosLight, cosNormal }
+      const plane = { view, offset, ...place, cosNormal }
       const received = this.#light.overcast?.(plane, clear) ?? clear
       return linearSRGB(air.uniforms, received.mul(view.source.irradiance)).mul(
         (this as unknown as { colorNode: Vec3 }).colorNode
       )
     })()
-    const { irradiance: sum } = builder.context as {
-      irradiance: { addAssign(node: unknown): void }
-    }
-    sum.addAssign(irradiance)
+    const context = builder.context as { irradiance: { addAssign(node: unknown): void } }
+    context.irradiance.addAssign(irradiance)
   }
 }
 

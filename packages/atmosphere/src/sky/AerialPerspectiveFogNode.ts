@@ -33,9 +33,9 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
 
   override setup(_builder: NodeBuilder): Node {
     return Fn(({ material }: NodeBuilder) => {
-      const { airAtVertices } = material as FineMaterial
       const { transmittance, inScatter } =
-        airAtVertices?.(this.view) ?? aerialPerspectiveTo(this.view, coveredPosition())
+        (material as FineMaterial).airAtVertices?.(this.view) ??
+        aerialPerspectiveTo(this.view, coveredPosition())
       return vec4(output.rgb.mul(transmittance).add(inScatter), output.a)
     })()
   }

@@ -57,7 +57,7 @@ export class WaterMirrorNode extends AtmosphereNode {
     if (environmentNode || material.envNode) return vec3(0)
     return Fn(() => {
       const { cover, normal, variance } = this.water
-      const radiance = vec3(0).toVar('mirrored') as unknown as Variable
+      const radiance = vec3(0).toVar() as unknown as Variable
       If(cover.greaterThan(0), () => {
         radiance.assign(this.#mirrored(normal, variance).mul(cover))
       })
@@ -78,8 +78,8 @@ export class WaterMirrorNode extends AtmosphereNode {
     const facet = normal.sub(incoming.mul(lean)).normalize().toConst() as Vec3
     const leaving = (reflect(incoming, facet) as unknown as Vec3).toConst()
     const raised = leaving.add(up.mul(leaving.dot(up).negate().add(LOWEST).max(0)))
-    const even = smoothstep(NEAR, FAR, distance).toConst('evenSky') as Float
-    const sky = vec3(0).toVar('skyOfWater') as unknown as Variable
+    const even = smoothstep(NEAR, FAR, distance).toConst() as Float
+    const sky = vec3(0).toVar() as unknown as Variable
     If(even.lessThan(1), () => {
       sky.assign(skyColor(view, raised.normalize().toConst(), null, []))
     })

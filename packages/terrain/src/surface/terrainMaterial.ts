@@ -87,9 +87,9 @@ export function terrainMaterial(
   const { place: offset, texels, blend } = handed
   const pages = varying(tilePages(atlas, resolution)).setInterpolation('flat') as unknown as Vec4
   const { width, height } = atlas.surface
-  const face = blend.z.round().toConst('face') as Float
+  const face = blend.z.round().toConst() as Float
   // Samples at a tile's edge may lie beyond it, where another page is.
-  const inPage = texels.xy.clamp(0, atlas.surfaceSide - 1).toConst('inPage') as Vec2
+  const inPage = texels.xy.clamp(0, atlas.surfaceSide - 1).toConst() as Vec2
   /** Texels of a texture of pages: of the tile's own page, and by its morph of its parent's. */
   const ofPages = (map: Texture, name: string): Vec4 => {
     const page = texture(map) as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } }
@@ -108,16 +108,14 @@ export function terrainMaterial(
   const ground = ofPages(atlas.surface.texture, 'ground')
   const picture = atlas.images === null ? null : ofPages(atlas.images.texture, 'picture')
   // Of the place itself: a varying less.
-  const up = figure.upAt(reference.mul(REFERENCE_STEP).add(offset), stretch).toConst('up') as Vec3
+  const up = figure.upAt(reference.mul(REFERENCE_STEP).add(offset), stretch).toConst() as Vec3
   const { first, second } = faceAxes(face)
   // Two components of a vector along the ellipsoid tell the third.
-  const outward = first.cross(second).toConst('outward')
-  const along = first.mul(ground.x).add(second.mul(ground.y)).toConst('along')
-  const gradient = along
-    .sub(outward.mul(along.dot(up).div(outward.dot(up))))
-    .toConst('gradient') as Vec3
-  const cosSlope = gradient.dot(gradient).add(1).inverseSqrt().toConst('cosSlope') as Float
-  const normal = up.sub(gradient).normalize().toConst('groundNormal') as Vec3
+  const outward = first.cross(second).toConst()
+  const along = first.mul(ground.x).add(second.mul(ground.y)).toConst()
+  const gradient = along.sub(outward.mul(along.dot(up).div(outward.dot(up)))).toConst() as Vec3
+  const cosSlope = gradient.dot(gradient).add(1).inverseSqrt().toConst() as Float
+  const normal = up.sub(gradient).normalize().toConst() as Vec3
   const surface = groundSurface(
     {
       grain,
@@ -140,7 +138,7 @@ export function terrainMaterial(
       paint: (layers, relief) => mask?.layersAt(layers, offset, figure.isFlat, relief) ?? layers
     }
   )
-  const depth = seaLevel.sub(ground.z).toConst('depth') as Float
+  const depth = seaLevel.sub(ground.z).toConst() as Float
   const { footprint, spread } = surface
   const shore = { offset, depth, up, footprint, spread }
   const sea = seaSurface(shore, windyVariance(seaVariance, blend.y), waveTime)
@@ -148,7 +146,7 @@ export function terrainMaterial(
   material.water = cover
   const dry = normal.sub(surface.grain)
   const lit = mix(dry, up.sub(sea.slope), cover)
-  const litView = (transformNormalToView(lit) as unknown as Vec3).toConst('litNormal')
+  const litView = (transformNormalToView(lit) as unknown as Vec3).toConst()
   // Shadow maps ask for its alpha, and need not wait for the rest.
   material.colorNode = Fn(({ material: drawn }: NodeBuilder) => {
     if (isShadowPass(drawn)) return vec4(1)
@@ -158,7 +156,7 @@ export function terrainMaterial(
     const color = (picture === null
       ? made
       : pictured(picture, made, surface.detail.mul(uniforms.imageAlbedo))
-    ).toVar('groundColor') as unknown as Vec3 & {
+    ).toVar() as unknown as Vec3 & {
       assign(value: Vec3): void
     }
     If(cover.greaterThan(0), () => {

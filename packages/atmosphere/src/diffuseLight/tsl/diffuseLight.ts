@@ -38,25 +38,30 @@ function altitudeRow({ thickness }: AtmosphereUniforms, altitude: Float): Float 
   return altitude.div(thickness).clamp().sqrt()
 }
 
-/** A function that reads a tile of the diffuse-light table at an altitude and angle of the light. */
+/**
+ * A function that reads a tile of the diffuse-light table at an altitude and angle of the light; `next` is how many tiles farther in its row, which may
+ * differ by pixel.
+ */
 export function diffuseLightReader(
   uniforms: AtmosphereUniforms,
   table: Table,
   altitude: Float,
   cosLight: Float
-): (tile: number) => Vec4 {
+): (tile: number, next?: Float) => Vec4 {
   const uv = vec2(lightColumn(cosLight), altitudeRow(uniforms, altitude))
     .mul(vec2(COLUMNS - 1 - 2 * INSET, ROWS - 1 - 2 * INSET))
     .add(0.5 + INSET)
     .div(vec2(COLUMNS * TILE_COLUMNS, ROWS * TILE_ROWS))
     .toConst()
-  return tile => {
-    const corner = vec2(
-      (tile % TILE_COLUMNS) / TILE_COLUMNS,
-      Math.floor(tile / TILE_COLUMNS) / TILE_ROWS
+  return (tile, next = float(0)) =>
+    table.sample(
+      uv.add(
+        vec2(
+          next.add(tile % TILE_COLUMNS).div(TILE_COLUMNS),
+          Math.floor(tile / TILE_COLUMNS) / TILE_ROWS
+        )
+      )
     )
-    return table.sample(tile === 0 ? uv : uv.add(corner))
-  }
 }
 
 /**

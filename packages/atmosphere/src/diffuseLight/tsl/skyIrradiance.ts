@@ -1,10 +1,9 @@
-import { float } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import type { Table } from '../../tables/TableAtlas'
 import { RADIANCE_SCALE } from '../../tables/tableSizes'
 import type { Float, Vec4 } from '../../tsl-types'
 import { diffuseLightReader, diffuseMoments } from './diffuseLight'
-import { applyMoments, momentBasis } from './moments'
+import { applyMoments, momentBasis, SH1, SH20 } from './moments'
 
 /** A₁/A₀ and A₂/A₀ of the clamped cosine. */
 const COSINE_1 = 2 / 3
@@ -33,18 +32,18 @@ export function skyIrradiance(
 ): Vec4 {
   const moments = diffuseMoments(uniforms, table, altitude, cosLight)
   const read = diffuseLightReader(uniforms, table, altitude, cosLight)
-  const facesUp = cosNormal.greaterThanEqual(0).toConst()
-  const up = read(6).toConst()
-  const down = read(7).toConst()
-  const horizontal = facesUp.select(float(1), float(-1)).toConst() as Float
-  const lobe = (cosine: Float, cosineLight: Float): Vec4 =>
-    applyMoments(moments, momentBasis(cosine, cosLight, cosineLight), COSINE_1, COSINE_2).mul(
-      Math.PI
-    )
-  const approximate = lobe(horizontal, horizontal.mul(cosLight))
-  const missing = facesUp.select(up, down).sub(approximate)
-  return lobe(cosNormal, cosNormalLight)
-    .add(missing.mul(cosNormal.mul(cosNormal)))
+  const square = cosNormal.mul(cosNormal).toConst()
+  const rest = square.oneMinus().toConst()
+  // Of a horizontal plane only m00, m10 and m20 are left: the square of what they give it is taken away with their own.
+  const basis = {
+    ...momentBasis(cosNormal, cosLight, cosNormalLight),
+    m10: cosNormal.mul(cosNormal.abs().oneMinus()).mul(SH1),
+    m20: rest.mul(-SH20)
+  }
+  const m00 = moments.m00.mul(rest)
+  return applyMoments({ ...moments, m00 }, basis, COSINE_1, COSINE_2)
+    .mul(Math.PI)
+    .add(read(6, cosNormal.lessThan(0).select(1, 0)).mul(square))
     .max(0)
     .div(RADIANCE_SCALE)
 }

@@ -44,46 +44,46 @@ const continents = /*#__PURE__*/ fractalSum('welkinContinents', CONTINENTS)
 const ridgedSum = /*#__PURE__*/ Fn(
   ([reference, offset, shortest, seed]: [Vec3, Vec3, Float, Float]) => {
     const place = warped(RIDGE_WARP, reference, offset, shortest, seed)
-    const sum = vec4(0).toVar('sum')
+    const sum = vec4(0).toVar()
     /** Weight of the octave (w) and its gradient. */
-    const weight = vec4(0, 0, 0, 1).toVar('weight')
-    const inverse = float(RIDGES.inverse).toVar('inverse')
-    const long = float(LONG[0]).toVar('longPart')
-    const short = float(SHORT[0]).toVar('shortPart')
-    const soft = float(SOFT[0]).toVar('softPart')
+    const weight = vec4(0, 0, 0, 1).toVar()
+    const inverse = float(RIDGES.inverse).toVar()
+    const long = float(LONG[0]).toVar()
+    const short = float(SHORT[0]).toVar()
+    const soft = float(SOFT[0]).toVar()
     loop('octave', RIDGES.count, octave => {
-      const kept = keptShare(inverse, shortest).div(long.add(short).add(soft)).toConst('kept')
+      const kept = keptShare(inverse, shortest).div(long.add(short).add(soft)).toConst()
       If(kept.lessThanEqual(0), () => {
         Break()
       })
       const index = seed.add(float(octave)).add(RIDGES.seed)
       const isMoved = float(octave).lessThan(RIDGES.moved - 0.5)
-      const where = isMoved.select(place.offset, offset).toConst('movedPlace') as Vec3
-      const plain = latticeNoise(reference, where, inverse, index).mul(STEEPNESS).toConst('plain')
-      const noise = isMoved.select(place.back(plain), plain).toConst('noise') as Vec4
+      const where = isMoved.select(place.offset, offset).toConst() as Vec3
+      const plain = latticeNoise(reference, where, inverse, index).mul(STEEPNESS).toConst()
+      const noise = isMoved.select(place.back(plain), plain).toConst() as Vec4
       const root = noise.w
         .mul(noise.w)
         .add(ROUNDNESS ** 2)
         .sqrt()
-        .toConst('root')
-      const fall = root.oneMinus().toConst('fall')
+        .toConst()
+      const fall = root.oneMinus().toConst()
       const isValley = float(octave)
         .lessThan(RIDGES.valleys - 0.5)
         .select(1, 0)
-        .toConst('isValley') as unknown as Float
-      const sign = isValley.mul(-2).add(1).toConst('sign')
-      const ridge = fall.mul(fall).mul(sign).add(isValley).toConst('ridge')
+        .toConst() as unknown as Float
+      const sign = isValley.mul(-2).add(1).toConst()
+      const ridge = fall.mul(fall).mul(sign).add(isValley).toConst()
       const steepness = fall.mul(noise.w).mul(inverse).mul(sign).mul(-2).div(root)
       // Product rule, gradients in xyz.
-      const slope = noise.xyz.mul(steepness).mul(weight.w).toConst('slope')
-      const over = ridge.sub(isValley.mul(1 - 2 * MEAN_RIDGE).add(MEAN_RIDGE)).toConst('over')
+      const slope = noise.xyz.mul(steepness).mul(weight.w).toConst()
+      const over = ridge.sub(isValley.mul(1 - 2 * MEAN_RIDGE).add(MEAN_RIDGE)).toConst()
       const gradient = slope.add(weight.xyz.mul(over))
       sum.addAssign(vec4(gradient, over.mul(weight.w)).mul(kept))
       const roughening = float(octave)
         .lessThan(CRAGS - 0.5)
         .select(ROUGHENING, CRAG_ROUGHENING)
-        .toConst('roughening') as unknown as Float
-      const next = ridge.mul(weight.w).mul(roughening).min(1).toConst('next')
+        .toConst() as unknown as Float
+      const next = ridge.mul(weight.w).mul(roughening).min(1).toConst()
       const turn = slope.add(weight.xyz.mul(ridge)).mul(next.oneMinus().mul(roughening).mul(2))
       weight.assign(vec4(turn, next.mul(float(2).sub(next))))
       inverse.mulAssign(2)
@@ -147,24 +147,24 @@ export const mountains = (
   seed: Float
 ): Vec4 => {
   const place = warped(LAND_WARP, reference, offset, shortest, seed)
-  const land = place.back(continents(reference, place.offset, shortest, seed)).toConst('land')
+  const land = place.back(continents(reference, place.offset, shortest, seed)).toConst()
   const belt = beltsAt(CHAINS, reference, place, seed)
   const short = beltsAt(SHORT_CHAINS, reference, place, seed)
-  const ridges = ridgedSum(reference, offset, shortest, seed).toConst('ridges')
+  const ridges = ridgedSum(reference, offset, shortest, seed).toConst()
   const lift = belt.add(short).sub(belt.mul(short.w)).sub(short.mul(belt.w))
-  const lifted = vec4(lift.xyz, belt.w.add(short.w).sub(belt.w.mul(short.w))).toConst('lift')
+  const lifted = vec4(lift.xyz, belt.w.add(short.w).sub(belt.w.mul(short.w))).toConst()
   const t = land.w
     .sub(HILLS_START)
     .div(HILLS_END - HILLS_START)
     .clamp(0, 1)
-    .toConst('t')
+    .toConst()
   const edge = t.mul(t.oneMinus()).mul((6 * HILLS) / (HILLS_END - HILLS_START))
   const rise = lifted.w.mul(1 - FOOTHILLS).toConst()
   const mask = smoothstep(0, 1, t)
     .mul(HILLS)
     .add(PLAINS)
     .add(lifted.w.mul(rise.add(FOOTHILLS)).mul(BELT_RIDGES))
-    .toConst('mask')
+    .toConst()
   const rugged = lifted.xyz.mul(rise.mul(2).add(FOOTHILLS).mul(BELT_RIDGES))
   const turn = land.xyz.mul(edge).add(rugged).mul(ridges.w)
   const mountain = vec4(ridges.xyz.mul(mask).add(turn), ridges.w.mul(mask)).mul(relief).toConst()
@@ -172,13 +172,13 @@ export const mountains = (
     .mul(LAND_HEIGHT)
     .add(lifted.mul(relief.mul(UPLIFT)))
     .add(vec4(0, 0, 0, LAND_OFFSET))
-    .toConst('level')
+    .toConst()
   const [low, high] = COASTAL
   const inner = level.w
     .sub(low)
     .div(high - low)
     .clamp(0, 1)
-    .toConst('inner')
+    .toConst()
   const share = smoothstep(0, 1, inner)
     .mul(1 - COASTAL_RIDGES)
     .add(COASTAL_RIDGES)

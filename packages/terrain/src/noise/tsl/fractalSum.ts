@@ -21,16 +21,16 @@ export const fractalSum = (
 ): ((reference: Vec3, offset: Vec3, shortest: Float, seed: Float) => Vec4) =>
   Fn(
     ([reference, offset, shortest, seed]: [Vec3, Vec3, Float, Float]) => {
-      const sum = vec4(0).toVar('sum')
-      const inverse = float(octaves.inverse).toVar('inverse')
-      const amplitude = float(1).toVar('amplitude')
+      const sum = vec4(0).toVar()
+      const inverse = float(octaves.inverse).toVar()
+      const amplitude = float(1).toVar()
       loop('octave', octaves.count, octave => {
-        const kept = keptShare(inverse, shortest).mul(amplitude).toConst('kept')
+        const kept = keptShare(inverse, shortest).mul(amplitude).toConst()
         If(kept.lessThanEqual(0), () => {
           Break()
         })
         const index = seed.add(float(octave)).add(octaves.seed)
-        const noise = latticeNoise(reference, offset, inverse, index).toConst('noise')
+        const noise = latticeNoise(reference, offset, inverse, index).toConst()
         sum.addAssign(vec4(noise.xyz.mul(inverse), noise.w).mul(kept))
         inverse.mulAssign(2)
         amplitude.mulAssign(octaves.gain)

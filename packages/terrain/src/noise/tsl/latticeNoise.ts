@@ -62,26 +62,26 @@ export const latticeGradient = /*#__PURE__*/ Fn(
  */
 export const latticeNoise = /*#__PURE__*/ Fn(
   ([reference, offset, inverse, seed]: [Vec3, Vec3, Float, Float]) => {
-    const scaled = inverse.mul(REFERENCE_STEP).toConst('scaled')
-    const coarse = scaled.min(1).toConst('coarse')
-    const base = reference.mul(coarse).floor().toConst('base')
+    const scaled = inverse.mul(REFERENCE_STEP).toConst()
+    const coarse = scaled.min(1).toConst()
+    const base = reference.mul(coarse).floor().toConst()
     // Products with a power of two are exact; the rest is 0 where cells are smaller than steps.
-    const p = reference.mul(coarse).sub(base).add(offset.mul(inverse)).toConst('p')
-    const corner = p.floor().toConst('corner')
-    const part = p.sub(corner).toConst('part')
+    const p = reference.mul(coarse).sub(base).add(offset.mul(inverse)).toConst()
+    const corner = p.floor().toConst()
+    const part = p.sub(corner).toConst()
     const fine = scaled.max(1)
     const origin = uvec3(ivec3(base.mul(fine)).add(ivec3(corner)))
       .add(uvec3(uint(seed).mul(uint(747796405)), uint(0), uint(seed)))
-      .toConst('origin')
+      .toConst()
 
-    const square = part.mul(part).toConst('square')
+    const square = part.mul(part).toConst()
     const cubic = square.mul(part)
-    const blend = cubic.mul(part.mul(part.mul(6).sub(15)).add(10)).toConst('blend')
+    const blend = cubic.mul(part.mul(part.mul(6).sub(15)).add(10)).toConst()
     const slope = square
       .mul(part.mul(part.sub(2)).add(1))
       .mul(30)
-      .toConst('slope')
-    const sum = vec4(0).toVar('sum')
+      .toConst()
+    const sum = vec4(0).toVar()
     for (let i = 0; i < 8; i++) {
       const [x, y, z] = [i & 1, (i >> 1) & 1, i >> 2]
       const gradient = latticeGradient(origin.add(uvec3(x, y, z))).toConst()

@@ -44,7 +44,7 @@ interface PagePlace extends SurfacePoint {
 type Axes = ReturnType<typeof faceAxes>
 
 /** Column and row of the texel that is drawn. */
-const texelOf = (side: number): Vec2 => (uv() as unknown as Vec2).mul(side).floor().toConst('texel')
+const texelOf = (side: number): Vec2 => (uv() as unknown as Vec2).mul(side).floor().toConst()
 
 /** @param cells - Steps between texels from the tile's first corner. */
 function placeAt(
@@ -76,7 +76,7 @@ const climateAt = (tile: PageUniforms, { reference, offset }: PagePlace): Float 
 export const heightsOf = (source: HeightSource, tile: PageUniforms, side: number): Vec4 =>
   Fn(() => {
     const place = placeAt(tile, faceAxes(tile.face), texelOf(side), side)
-    const ground = heightAndSky(source, place, upAt(tile, place), tile.shortest).toConst('ground')
+    const ground = heightAndSky(source, place, upAt(tile, place), tile.shortest).toConst()
     return vec4(ground.x, packed(climateAt(tile, place), ground.y), 0, 1)
   })()
 
@@ -89,7 +89,7 @@ function surfaceTexel(
   shortest: Float
 ): Vec4 {
   const up = upAt(tile, place)
-  const gradient = gradientAlong(ground.gradient, up).toConst('gradient')
+  const gradient = gradientAlong(ground.gradient, up).toConst()
   const along = vec2(gradient.dot(first), gradient.dot(second))
   return vec4(along, ground.height, patchAt(tile, place, shortest))
 }
@@ -104,8 +104,8 @@ export const surfaceOf = (
   Fn(() => {
     const axes = faceAxes(tile.face)
     const place = placeAt(tile, axes, texelOf(side), side)
-    const shortest = tile.shortest.mul(SHARPNESS / density).toConst('shortest') as Float
-    const ground = source.sample(place, shortest).toConst('ground') as Vec4
+    const shortest = tile.shortest.mul(SHARPNESS / density).toConst() as Float
+    const ground = source.sample(place, shortest).toConst() as Vec4
     return surfaceTexel(tile, axes, place, { gradient: ground.xyz, height: ground.w }, shortest)
   })()
 
@@ -160,13 +160,13 @@ export const loadedSurfaceOf = (
     }
     const [a, b] = [along(1, 0), along(0, 1)]
     // The gradient g in the plane of both steps has g·a and g·b equal to the rises.
-    const area = a.step.cross(b.step).toConst('area')
+    const area = a.step.cross(b.step).toConst()
     const gradient = b.step
       .cross(area)
       .mul(a.rise)
       .add(area.cross(a.step).mul(b.rise))
       .div(area.dot(area))
-      .toConst('slope')
+      .toConst()
     const shortest = tile.shortest.mul(SHARPNESS / density)
     return surfaceTexel(tile, axes, place, { gradient, height: at(0, 0) }, shortest)
   })()

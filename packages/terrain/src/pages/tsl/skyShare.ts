@@ -24,11 +24,11 @@ export function heightAndSky(
 ): Vec2 {
   // East, but for a place at the pole, where there is none.
   const eastward = vec3(0, 1e-4, 1).cross(up).toConst()
-  const east = eastward.div(eastward.length().max(1e-6)).toConst('east')
-  const north = up.cross(east).toConst('north')
-  const ground = vec4(0).toVar('groundHere') as unknown as Variable<Vec4>
-  const rise = float(0).toVar('rise') as unknown as Variable<Float>
-  const sky = float(0).toVar('sky') as unknown as Variable<Float>
+  const east = eastward.div(eastward.length().max(1e-6)).toConst()
+  const north = up.cross(east).toConst()
+  const ground = vec4(0).toVar() as unknown as Variable<Vec4>
+  const rise = float(0).toVar() as unknown as Variable<Float>
+  const sky = float(0).toVar() as unknown as Variable<Float>
   const { count, nearest, factor } = DISTANCES
   // The first is the place itself: a source's code is there once.
   loop('place', 1 + AZIMUTHS * count, index => {

@@ -5,11 +5,11 @@ import { GRAIN_SLOPE } from '../grainTexture'
 import { frameNear, pieceOf, tilingVertices } from './stochasticTiling'
 
 /** Sides of the picture on the ground [m], and longer side of a pixel's footprint at which nothing is left [m]. */
-const COARSE = { side: 17, gone: 1.1 }
+const COARSE = { side: 17, gone: 1 }
 const FINE = { side: 2.1, gone: 0.14 }
 
 /** Crowns and outcrops, where single stones are too small to be seen: footprints between which they come, and go [m]. */
-const CANOPY = { side: 150, from: 0.22, to: 0.7, fades: 5, gone: 10 }
+const CANOPY = { side: 150, from: 0.35, to: 0.8, fades: 5, gone: 10 }
 
 /** Footprint at which the slopes of all stones are smaller than a pixel [m]. */
 const LOST = 0.075
@@ -67,7 +67,7 @@ export function grainAt(place: GrainPlace): Grain {
   const across = dFdx(offset).toConst() as Vec3
   const along = dFdy(offset).toConst() as Vec3
   const [width, height] = [across.length().toConst(), along.length().toConst()] as Float[]
-  const footprint = width.max(height).toConst('footprint') as Float
+  const footprint = width.max(height).toConst() as Float
   // Between both sides of a pixel, nearer to the longer one where it is much longer: one look-up a picture, of little blur and little shimmer.
   const size = width.mul(height).sqrt().max(footprint.mul(LEAST_SIZE))
   const share = ({ gone }: typeof FINE): Float =>
@@ -79,12 +79,12 @@ export function grainAt(place: GrainPlace): Grain {
     .toConst() as Float
   // Several vectors in one value: what the branches of both need is found once, and none of it far away.
   const layers = Fn(() => {
-    const fine = vec4(0).toVar('fineGrain') as unknown as Variable
-    const coarse = vec4(0).toVar('coarseGrain') as unknown as Variable
-    const fineSlope = vec3(0).toVar('fineSlope') as unknown as Slope
-    const coarseSlope = vec3(0).toVar('coarseSlope') as unknown as Slope
-    const crowns = vec4(0).toVar('crowns') as unknown as Variable
-    const crownSlope = vec3(0).toVar('crownSlope') as unknown as Slope
+    const fine = vec4(0).toVar() as unknown as Variable
+    const coarse = vec4(0).toVar() as unknown as Variable
+    const fineSlope = vec3(0).toVar() as unknown as Slope
+    const coarseSlope = vec3(0).toVar() as unknown as Slope
+    const crowns = vec4(0).toVar() as unknown as Variable
+    const crownSlope = vec3(0).toVar() as unknown as Slope
     // Seen from afar there are none of them.
     If(footprint.lessThan(CANOPY.gone), () => {
       const logSize = size.max(1e-6).log2().toConst() as Float
@@ -117,7 +117,7 @@ export function grainAt(place: GrainPlace): Grain {
       vec4(fine.w, coarse.w, crowns.z, crowns.w),
       vec4(crownSlope, 0)
     )
-  })().toConst('grainLayers') as unknown as { element(i: number): Vec4 }
+  })().toConst() as unknown as { element(i: number): Vec4 }
   const [fine, coarse, light, crowns] = [0, 1, 2, 3].map(i => layers.element(i))
   return {
     gradient: (fineGain, coarseGain) => fine.xyz.mul(fineGain).add(coarse.xyz.mul(coarseGain)),

@@ -118,16 +118,13 @@ export function groundZone(northing: Float): Vec2 {
 export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimate {
   const { height, patch, climate, up, pole, zone } = place
   const northing = up.dot(pole).toConst() as Float
-  const overSea = height.sub(seaLevel).toConst('overSea') as Float
+  const overSea = height.sub(seaLevel).toConst() as Float
   // Ground that falls towards the equator has a normal nearer to it than up is.
   const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign()) as unknown as Float
   const snowLine = zone.x.add(climate.mul(DRY_SNOW)).add(sunny.mul(SUNNY_SNOW)).toConst()
-  const overSnow = height.sub(snowLine).toConst('overSnow') as Float
-  const overTrees = overSnow
-    .add(TREES_BELOW)
-    .add(patch.mul(TREES_PATCH))
-    .toConst('overTrees') as Float
-  const dryness = zone.y.add(climate.mul(DRY_CLIMATE)).clamp(0, 1).toConst('dryness') as Float
+  const overSnow = height.sub(snowLine).toConst() as Float
+  const overTrees = overSnow.add(TREES_BELOW).add(patch.mul(TREES_PATCH)).toConst() as Float
+  const dryness = zone.y.add(climate.mul(DRY_CLIMATE)).clamp(0, 1).toConst() as Float
   const lowland = smoothstep(...LOWLAND, overSea)
     .oneMinus()
     .toConst()
@@ -170,21 +167,21 @@ export function groundRules(
     .mul(smoothstep(...TREES_END, overTrees).oneMinus())
     // As with beaches: a pixel that shows much ground shows what lies behind the shore.
     .mul(smoothstep(...TREES_OVER_SEA, overSea.add(spread)))
-    .toConst('woods')
+    .toConst()
   // Stones come through grass where they are highest.
-  const bareness = blurred(SCREE, overTrees.add(relief.mul(260))).toConst('bareness')
+  const bareness = blurred(SCREE, overTrees.add(relief.mul(260))).toConst()
   // A pixel as large as a beach is mostly of what lies behind it.
   const inland = smoothstep(
     ...SHORE,
     overSea.add(patch.mul(SHORE_PATCH)).add(relief).add(spread)
-  ).toConst('inland')
-  const bare = smoothstep(...ROCK_STEEPNESS, steepness).toConst('bare')
+  ).toConst()
+  const bare = smoothstep(...ROCK_STEEPNESS, steepness).toConst()
   const snow = blurred(
     SNOW_OVER,
     overSnow.add(patch.mul(SNOW_PATCH)).add(hollow.mul(HOLLOW_SNOW)).sub(relief.mul(160))
   )
     .mul(smoothstep(...SNOW_STEEPNESS, steepness).oneMinus())
-    .toConst('snow')
+    .toConst()
   const layers = { snow, bare, inland, bareness, dryness, woods }
   return { layers, relief, spread }
 }

@@ -14,6 +14,9 @@ import {
 /** Dry grass per climate: steppe is straw, wet country green. Less: land from orbit is of one colour (*Terrain*). */
 const DRY_GRASS = 1.5
 
+/** Slopes of sand over those of stones [–]. 0.05: a beach is of flat shards (*Terrain*, still shore). */
+const SAND_BUMP = 0.02
+
 /** Mean square of the slopes of stones. */
 const GRAIN_VARIANCE = 0.3
 
@@ -81,13 +84,13 @@ export function groundSurface(
   const layers = paint(rules.layers, relief)
   const { snow, bare, inland, bareness, dryness, woods } = layers
   // Hollows are darker: damp, and full of shadows that are smaller than a page's texel.
-  const tone = patch.mul(0.9).add(relief.mul(0.35)).sub(place.hollow.mul(0.9)).toConst('tone')
+  const tone = patch.mul(0.9).add(relief.mul(0.35)).sub(place.hollow.mul(0.9)).toConst()
   // Dark between stones, and between blades.
-  const stony = stone.mul(0.45).add(1).toConst('stony')
-  const light = blade.mul(1.05).add(tuft.mul(0.2)).toConst('light')
+  const stony = stone.mul(0.45).add(1).toConst()
+  const light = blade.mul(1.05).add(tuft.mul(0.2)).toConst()
   const rock = mix(color(DARK_ROCK), color(ROCK), tone.mul(1.1).add(0.55).clamp(0, 1)).mul(stony)
   // Drier and fresher spots of metres, dry blades and soil of centimetres: the brightest and the darkest of the picture.
-  const spots = boulder.mul(0.8).add(tuft.mul(0.5)).add(brush.mul(0.9)).toConst('spots')
+  const spots = boulder.mul(0.8).add(tuft.mul(0.5)).add(brush.mul(0.9)).toConst()
   const parched = patch
     .mul(0.6)
     .add(spots)
@@ -98,7 +101,7 @@ export function groundSurface(
     .add(smoothstep(-900, 200, overTrees).mul(0.2))
     .max(smoothstep(0.36, 0.6, blade).mul(0.8))
   // Heather and dwarf shrubs lie in patches, more of them towards the tree line.
-  const high = smoothstep(-900, 100, overTrees).toConst('high')
+  const high = smoothstep(-900, 100, overTrees).toConst()
   const heath = smoothstep(-0.1, 0.35, spots.sub(patch.mul(0.9)).add(high.mul(0.4)).sub(0.4))
   const turf = mix(mix(color(GRASS), color(STRAW), straw), color(HEATH), heath.mul(0.65))
   const blades = turf.mul(light.add(brush.mul(0.35)).add(1).max(0.2))
@@ -107,7 +110,7 @@ export function groundSurface(
   const shrubs = smoothstep(0.3, 0.5, crown.add(patch.sub(dryness).mul(0.35)).sub(0.05)).toConst(
     'shrubs'
   )
-  const meadow = mix(grassland, color(SHRUB), shrubs.mul(0.75)).toConst('meadow') as Vec3
+  const meadow = mix(grassland, color(SHRUB), shrubs.mul(0.75)).toConst() as Vec3
   const leaves = mix(
     color(FOREST),
     color(BROADLEAF),
@@ -120,9 +123,9 @@ export function groundSurface(
   const turfed = smoothstep(-0.45, 0.3, patch.sub(overTrees.mul(1 / 2500)).add(stone.mul(-0.5)))
   const stones = color(SCREE).mul(tone.mul(0.6).add(1).clamp(0.4, 1.3))
   const scree = mix(stones, color(TUNDRA), turfed.mul(0.75)).mul(stony)
-  const tangle = blade.add(boulder.mul(0.3)).toConst('tangle') as Float
-  const sand = color(SAND).mul(stone.mul(0.1).add(patch.mul(0.35)).add(1))
-  const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.06))).toConst('wet')
+  const tangle = blade.add(boulder.mul(0.3)).toConst() as Float
+  const sand = color(SAND).mul(stone.mul(0.03).add(tuft.mul(0.06)).add(patch.mul(0.35)).add(1))
+  const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.06))).toConst()
   const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
   const mapped = maps?.groundAt(place, layers, colors)
   /** A value as made up, and that of maps where there are any. */
@@ -133,12 +136,12 @@ export function groundSurface(
 
   // Stones stand out of rock and scree, hardly out of grass, sand and snow.
   const stoniness = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
-  const ownBump = mix(float(0.05), stoniness, inland.max(bare)).mul(snow.mul(-0.96).add(1))
-  const bump = either(ownBump, () => float(0)).toConst('bump')
+  const ownBump = mix(float(SAND_BUMP), stoniness, inland.max(bare)).mul(snow.mul(-0.96).add(1))
+  const bump = either(ownBump, () => float(0)).toConst()
   const ownRough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
   const rough = either(ownRough, ({ roughness }) => roughness.mul(wet.mul(0.37).add(0.63)))
   // Slopes that are smaller than a pixel roughen it: α² grows by twice their variance (Kaplanyan et al. 2016).
-  const roughSquare = rough.mul(rough).toConst('roughSquare')
+  const roughSquare = rough.mul(rough).toConst()
   const alpha = roughSquare.mul(roughSquare).add(
     bump
       .mul(bump)
@@ -185,7 +188,7 @@ const layered = (layers: GroundLayers, colors: GroundColors, shared: Float[]): V
       ;(value as unknown as { toStack(): void }).toStack()
     }
     const { snow, bare, inland, bareness, dryness, woods } = layers
-    const made = vec3(0).toVar('made') as unknown as Vec3 & { assign(value: Vec3): void }
+    const made = vec3(0).toVar() as unknown as Vec3 & { assign(value: Vec3): void }
     const lay = (share: Float, layer: Vec3): void => {
       If(share.greaterThan(0), () => {
         made.assign(mix(made, layer, share))

@@ -114,9 +114,9 @@ function readMaps(maps: MapsInShader, place: GrainPlace, weights: OfKinds<Float>
     .min(1)
     .toConst() as Float
   const found = Fn((builder: NodeBuilder) => {
-    const color = vec4(0).toVar('mappedColor') as unknown as Variable<Vec4>
-    const relief = vec4(0).toVar('mappedRelief') as unknown as Variable<Vec4>
-    const slope = vec3(0).toVar('mappedSlope') as unknown as Variable<Vec3>
+    const color = vec4(0).toVar() as unknown as Variable<Vec4>
+    const relief = vec4(0).toVar() as unknown as Variable<Vec4>
+    const slope = vec3(0).toVar() as unknown as Variable<Vec3>
     If(share.greaterThan(LEAST), () => {
       const { tangent, bitangent } = frameNear(place.normal, place.up, place.first)
       const inFrame = (vector: Vec3): Vec2 => vec2(vector.dot(tangent), vector.dot(bitangent))
@@ -179,7 +179,7 @@ function readMaps(maps: MapsInShader, place: GrainPlace, weights: OfKinds<Float>
       slope.assign(tangent.mul(rise.x).add(bitangent.mul(rise.y)))
     })
     return mat4(color, vec4(slope, relief.z), vec4(0), vec4(0))
-  })().toConst('mappedGround') as unknown as { element(i: number): Vec4 }
+  })().toConst() as unknown as { element(i: number): Vec4 }
   const [color, relief] = [found.element(0), found.element(1)]
   return {
     share,

@@ -54,7 +54,7 @@ export function maskShares(
   isFlat: boolean,
   relief: Float
 ): OfKinds<Float> {
-  const place = placeOnMask(mask, offset, isFlat).toConst('onMask') as Vec2
+  const place = placeOnMask(mask, offset, isFlat).toConst() as Vec2
   const isInside = step(0, place.x)
     .mul(step(place.x, 1))
     .mul(step(0, place.y))
@@ -65,7 +65,7 @@ export function maskShares(
   const used = vec4(...([0, 1, 2, 3].map(n => (mask.materials[n] ? 1 : 0)) as [number]))
   const painted = frayed(read).mul(used).mul(isInside).toConst() as Vec4
   const sum = painted.dot(vec4(1)).max(1)
-  const shares = painted.div(sum).toConst('painted') as Vec4
+  const shares = painted.div(sum).toConst() as Vec4
   const channels = [shares.x, shares.y, shares.z, shares.w]
   return ofKinds(kind =>
     mask.materials.reduce<Float>(

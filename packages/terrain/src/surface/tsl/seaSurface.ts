@@ -1,5 +1,6 @@
-import { Fn, If, exp, float, mix, smoothstep, vec3, vec4 } from 'three/tsl'
-import type { Float, Vec3, Vec4 } from '../../tsl-types'
+import { Fn, If, exp, float, mix, smoothstep, uniformArray, vec3, vec4 } from 'three/tsl'
+import { Vector4 } from 'three'
+import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
 import { SEA_WAVES, WAVE_SLOPE } from '../seaWaves'
 import { gradientAlong } from './gradientAlong'
 import { schlick } from './schlick'
@@ -50,7 +51,7 @@ const CALMEST = 0.25
  * @param climate - Noise about 0.
  */
 export const windyVariance = (seaVariance: Float, climate: Float): Float =>
-  seaVariance.mul(climate.mul(WINDY).add(1).max(CALMEST)).toConst('windyVariance')
+  seaVariance.mul(climate.mul(WINDY).add(1).max(CALMEST)).toConst()
 
 /** A place of the sea. */
 export interface SeaPlace {
@@ -66,6 +67,10 @@ export interface SeaPlace {
   readonly spread: Float
 }
 
+/** Constants that a loop reads. */
+const listed = (values: Vector4[]): { element(index: Int): Vec4 } =>
+  uniformArray(values, 'vec4') as unknown as { element(index: Int): Vec4 }
+
 type Variable = Vec4 & { assign(value: Vec4): void; addAssign(value: Vec4): void }
 
 /**
@@ -77,29 +82,31 @@ type Variable = Vec4 & { assign(value: Vec4): void; addAssign(value: Vec4): void
 export function seaSurface(place: SeaPlace, seaVariance: Float, seconds: Float): SeaSurface {
   const { offset, depth, up, footprint, spread } = place
   const shallow = spread.mul(SHALLOW_SPREAD).max(SHALLOW)
-  const cover = smoothstep(0, shallow, depth).toConst('cover')
+  const cover = smoothstep(0, shallow, depth).toConst()
+  const vectors = listed(SEA_WAVES.map(wave => new Vector4(...wave.vector, wave.frequency)))
+  const directions = listed(SEA_WAVES.map(wave => new Vector4(...wave.direction, wave.length)))
   const waves = Fn(() => {
-    const sum = vec4(0).toVar('waves') as unknown as Variable
+    const sum = vec4(0).toVar() as unknown as Variable
     // From afar no wave is kept.
     If(cover.greaterThan(0).and(footprint.lessThan(LONGEST_KEPT)), () => {
       const steepest = seaVariance.sqrt().mul(WAVE_SLOPE).toConst()
-      for (const { vector, direction, length, frequency } of SEA_WAVES) {
-        const periods = offset
-          .dot(vec3(...vector))
-          .div(256)
-          .sub(seconds.mul(frequency))
+      // A loop: where there is no sea, the code of its waves costs time, too.
+      loop('wave', SEA_WAVES.length, wave => {
+        const { xyz: vector, w: frequency } = vectors.element(wave).toConst() as Vec4
+        const { xyz: direction, w: length } = directions.element(wave).toConst() as Vec4
+        const periods = offset.dot(vector).div(256).sub(seconds.mul(frequency))
         const kept = footprint.div(length).oneMinus().max(0).mul(steepest).toConst()
         const tilt = periods
           .fract()
           .mul(2 * Math.PI)
           .cos()
           .mul(kept)
-        sum.addAssign(vec4(vec3(...direction).mul(tilt), kept.mul(kept).div(3)))
-      }
+        sum.addAssign(vec4(direction.mul(tilt), kept.mul(kept).div(3)))
+      })
       sum.assign(vec4(gradientAlong(sum.xyz, up), sum.w))
     })
     return sum
-  })().toConst('sea') as unknown as Vec4
+  })().toConst() as unknown as Vec4
   return { cover, slope: waves.xyz.mul(cover), variance: seaVariance.sub(waves.w) }
 }
 

@@ -3,14 +3,14 @@ import { layout, type Float, type Vec3 } from '../../tsl-types'
 
 /** The two axes along a face of the cube, by its number 0 to 5. Twin: ../cpu/cubeSphere.ts */
 export function faceAxes(face: Float): { first: Vec3; second: Vec3 } {
-  const axis = face.mul(0.5).floor().toConst('axis')
+  const axis = face.mul(0.5).floor().toConst()
   const sign = face.sub(axis.mul(2)).mul(-2).add(1)
   const isX = axis.lessThan(0.5).select(1, 0)
   const isZ = axis.greaterThan(1.5).select(1, 0)
   const isY = isX.add(isZ).oneMinus()
   return {
-    first: vec3(isZ, isX, isY).mul(sign).toConst('first'),
-    second: vec3(isY, isZ, isX).toConst('second')
+    first: vec3(isZ, isX, isY).mul(sign).toConst(),
+    second: vec3(isY, isZ, isX).toConst()
   }
 }
 
@@ -25,10 +25,10 @@ export function faceAxes(face: Float): { first: Vec3; second: Vec3 } {
  */
 export const unitDifference = /*#__PURE__*/ Fn(
   ([w, delta]: [Vec3, Vec3]) => {
-    const square = w.dot(w).toConst('square')
-    const gain = w.dot(delta).mul(2).add(delta.dot(delta)).toConst('gain')
-    const length = square.sqrt().toConst('length')
-    const other = square.add(gain).sqrt().toConst('other')
+    const square = w.dot(w).toConst()
+    const gain = w.dot(delta).mul(2).add(delta.dot(delta)).toConst()
+    const length = square.sqrt().toConst()
+    const other = square.add(gain).sqrt().toConst()
     const shrink = gain.div(length.mul(other).mul(length.add(other)))
     return delta.div(other).sub(w.mul(shrink))
   },

@@ -90,7 +90,7 @@ export function tileVertex(
   const fromCenter = (delta: Vec3): Vec3 => figure.difference(cube, delta, radii).toConst()
 
   const cells = positionGeometry.xy as unknown as Vec2
-  const even = cells.mul(0.5).floor().mul(2).toConst('even') as Vec2
+  const even = cells.mul(0.5).floor().mul(2).toConst() as Vec2
   const start = morphStart(detail)
   // That of the vertex to which an odd one moves: wholly moved it must be there, height and all, or slivers are left between them.
   const distance = tileOffset.xyz
@@ -104,7 +104,7 @@ export function tileVertex(
     .div(1 - start)
     .clamp(0, 1)
     .max(fade)
-    .toConst('morph')
+    .toConst()
 
   const inParent = quarterOf(quarter).mul(resolution).toConst()
   const vertexAt = (slot: Float, cell: Vec2): Vec3 =>
@@ -123,14 +123,14 @@ export function tileVertex(
   const flatness = smoothstep(...FLAT, bend.div(distance))
     .oneMinus()
     .mul(smoothstep(flatUntil, flatUntil.mul(2), distance).oneMinus())
-    .toConst('flatness') as Float
+    .toConst() as Float
   const mixed = mix(
     mix(fine, before, flatness),
     vertexAt(parent, even.add(inParent).mul(0.5)),
     morph
-  ).toConst('mixed') as Vec3
+  ).toConst() as Vec3
 
-  const moved = mix(cells, even, morph.max(flatness)).toConst('moved') as Vec2
+  const moved = mix(cells, even, morph.max(flatness)).toConst() as Vec2
   const skirtShare = positionGeometry.z as unknown as Float
   const outwards = step(vec2(resolution - 0.5), cells).sub(step(cells, vec2(0.5)))
   const delta = alongCube(moved.add(outwards.mul(skirtShare.mul(SKIRT_WIDTH))))
@@ -138,7 +138,7 @@ export function tileVertex(
   // Vertices of the triangle under the viewer are within three cells, morphed or not.
   const room = distance.sub(cell.mul(CLOSE)).max(0)
   const height = mixed.x.min(ceiling.add(room)).max(seaLevel)
-  const up = figure.upOfCube(cube.add(delta), stretch).toConst('up') as Vec3
+  const up = figure.upOfCube(cube.add(delta), stretch).toConst() as Vec3
   const tilt = figure.turnOfUp(cube, delta, stretch)
   const skirt = skirtShare.mul(cell.mul(uniforms.skirt).min(cell.max(DEEPEST_SKIRT)))
   const position = base.xyz
