@@ -227,11 +227,10 @@ export class BoltPass {
   /** Light of the channel [luminance × `luminanceScale`]. To be called inside of a shader function. @param at - In the picture, y down. */
   sample(at: Vec2): Vec3 {
     const drawn = at.sub(this.#crop.xy).div(this.#crop.zw).toConst() as Vec2
-    const light = vec3(0).toVar() as Variable<Vec3>
-    If(drawn.clamp(0, 1).equal(drawn).all(), () => {
-      light.assign(this.#texture.sample(drawn).level(0).rgb)
-    })
-    return light
+    const inside = drawn.clamp(0, 1).toConst() as Vec2
+    // Read in any case: a look-up that others need not wait for.
+    const light = this.#texture.sample(inside).level(0).rgb.toConst()
+    return inside.equal(drawn).all().select(light, vec3(0))
   }
 
   /**

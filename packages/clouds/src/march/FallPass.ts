@@ -8,7 +8,6 @@ import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { encodeDistance } from '../temporal/tsl/packing'
 import type { Float, LevelTexture, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
-import { fallBlockOf } from './FrameUniforms'
 import type { FallOnRays, LitRays } from './tsl/fallOnRays'
 import type { MarchedTargets } from './tsl/marchedPixel'
 import { viewRayAt, type FrameInputs } from './tsl/viewRay'
@@ -78,7 +77,7 @@ export class FallPass {
 
   /** @param block - Edge of the blocks of which a frame marches one pixel each. */
   setSize(width: number, height: number, block: number): void {
-    const shared = fallBlockOf(block)
+    const shared = this.#frame.fallBlockOf(block, width, height)
     this.#target.setSize(Math.ceil(width / shared), Math.ceil(height / shared))
     this.#spreadTarget.setSize(width, height)
   }
