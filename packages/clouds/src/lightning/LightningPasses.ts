@@ -39,6 +39,8 @@ const HAZE_SOFTNESS = 25
 /** Longest path through lit haze [m]. */
 const LONGEST_HAZE = 60_000
 
+/** Width over which clouds have one face [m]: as deep as one looks into them. Smaller: grain on near ones (*Storm at night*). */
+const FACE = 30
 /** Opacity of a ray's clouds above which they have a face [–]. */
 const FACED = 0.1
 /** Light of the night's sky, as it were, on faces of clouds that are turned away from a flash [–]. 0: black (*Storm at night*). */
@@ -181,7 +183,7 @@ export class LightningPasses {
     for (const axis of [vec2(1, 0), vec2(0, 1)]) {
       const next = viewRayAt(viewRays, at.add(axis.mul(block).div(size)).toConst()).direction
       const aside = next.sub(direction.mul(next.dot(direction))).toConst() as Vec3
-      const width = aside.length().mul(mean).toConst() as Float
+      const width = aside.length().mul(mean).add(FACE).toConst() as Float
       const [before, after] = [-1, 1].map(sign => {
         const place = here.add(axis.mul(sign).div(marchedSize)).toConst()
         const shares = seen.shares.sample(place).level(0).toConst() as Vec4
