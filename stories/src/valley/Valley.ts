@@ -9,7 +9,7 @@ import {
 } from '@welkin/atmosphere'
 import type { Atmosphere, LightShaftsQuality } from '@welkin/atmosphere'
 import { cloudEnvironment, CloudLayers } from '@welkin/clouds'
-import type { CloudQuality, CloudQualityName } from '@welkin/clouds'
+import type { CloudQuality, CloudQualityName, Lightning } from '@welkin/clouds'
 import { MathUtils, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'

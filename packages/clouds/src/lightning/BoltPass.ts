@@ -19,7 +19,7 @@ import { Fn, Discard, If, attribute, screenUV, texture, varying, vec2, vec3, vec
 import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
 import { isDrawnBefore } from '../march/tsl/viewRay'
-import type { Float, LevelTexture, Mat3, Mat4, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
+import type { Float, LevelTexture, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { matrix3, matrix4, number, vector3, vector4 } from '../uniforms'
 import { CHANNEL_COLOR, type PlacedChannel } from './channel'
 
