@@ -1,6 +1,7 @@
 import { CloudLayers, CloudLightTable, CloudNoise, precipitationShafts } from '@welkin/clouds'
 import { BoxGeometry, Mesh, MeshBasicMaterial, Vector3 } from 'three'
 import { vec4 } from 'three/tsl'
+import { sharing } from '../../../packages/clouds/src/march/FallPass'
 import { CloudView, coarse, fog, onGround, viewSize } from '../harness/cloud-view'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -47,7 +48,6 @@ gpuTest(
       const shared = { noise, light, precipitation }
       const quality = { ...coarse, layerSteps: 32, block }
       const view = new CloudView(renderer, atmosphere, new CloudLayers([layer]), shared, quality)
-      view.node.passes.viewRays.frame.sharedFrom = 0 // else, pixels of so small a picture share none
       const wall = new Mesh(new BoxGeometry(100, 200, 1), new MeshBasicMaterial({ color: 0 }))
       wall.position.set(-48, 0, -WALL - 0.5)
       view.scene.add(wall)
@@ -59,7 +59,11 @@ gpuTest(
       wall.material.dispose()
       return picture
     }
+    // Else, pixels of so small a picture share none.
+    const { from } = sharing
+    sharing.from = 0
     const [own, shared] = [await draw(1), await draw(2)]
+    sharing.from = from
     const { width, height } = viewSize
     const row = height / 2
     const bright = own.at(width - 2, row)[1]

@@ -132,7 +132,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       topAltitude: 7000,
       weatherScale: 0.5,
       anvil: 0.4,
-      precipitation: { rate: 12 }
+      precipitation: { rate: 12, streaks: 1.8 }
     },
     cumulus
   ],

@@ -19,14 +19,15 @@ import { Fn, Discard, If, attribute, screenUV, texture, varying, vec2, vec3, vec
 import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
 import { isDrawnBefore } from '../march/tsl/viewRay'
-import type { Float, LevelTexture, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
+import type { Float, LevelTexture, Mat3, Mat4, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { matrix3, matrix4, number, vector3, vector4 } from '../uniforms'
 import { CHANNEL_COLOR, type PlacedChannel } from './channel'
 
 /** Deviation of a channel's width in the picture [pixels]. Smaller: steps at its edges. */
 const WIDTH = 0.8
-/** Half width of what is drawn of it [pixels]. */
+/** Half width of what is drawn of it, and by how much it is drawn beyond the ends of a piece, where the next begins [pixels]. */
 const HALF_WIDTH = 3 * WIDTH
+const BEYOND = 1
 /** Greatest luminance that half floats keep. */
 const GREATEST = 6e4
 /** Part of the distance over which clouds hide a channel. */
@@ -174,7 +175,7 @@ export class BoltPass {
         .greaterThan(1e-3)
         .select(line.div(length.max(1e-3)), vec2(1, 0))
         .toConst() as Vec2
-      const beyond = corner.x.mul(2).sub(1).mul(HALF_WIDTH)
+      const beyond = corner.x.mul(2).sub(1).mul(BEYOND)
       const at = length.mul(corner.x).add(beyond).toConst() as Float
       const across = corner.y.mul(HALF_WIDTH).toConst() as Float
       const pixel = start.add(along.mul(at)).add(vec2(along.y.negate(), along.x).mul(across))
@@ -227,10 +228,11 @@ export class BoltPass {
   /** Light of the channel [luminance × `luminanceScale`]. To be called inside of a shader function. @param at - In the picture, y down. */
   sample(at: Vec2): Vec3 {
     const drawn = at.sub(this.#crop.xy).div(this.#crop.zw).toConst() as Vec2
-    const inside = drawn.clamp(0, 1).toConst() as Vec2
-    // Read in any case: a look-up that others need not wait for.
-    const light = this.#texture.sample(inside).level(0).rgb.toConst()
-    return inside.equal(drawn).all().select(light, vec3(0))
+    const light = vec3(0).toVar() as Variable<Vec3>
+    If(drawn.clamp(0, 1).equal(drawn).all(), () => {
+      light.assign(this.#texture.sample(drawn).level(0).rgb)
+    })
+    return light
   }
 
   /**

@@ -7,10 +7,8 @@ import {
 import { Vector3, Vector4 } from 'three'
 import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { componentAt } from '../density/tsl/componentAt'
 import type { CloudsNode } from '../march/CloudsNode'
 import { FAR_AWAY } from '../march/tsl/layerBoundaries'
-import { POINTS } from '../march/tsl/seenPoints'
 import { marchedPixel } from '../march/tsl/marchedPixel'
 import { viewRayAt } from '../march/tsl/viewRay'
 import {
@@ -39,8 +37,9 @@ const HAZE_SOFTNESS = 25
 /** Longest path through lit haze [m]. */
 const LONGEST_HAZE = 60_000
 
-/** Width over which clouds have one face [m]: as deep as one looks into them. Smaller: grain on near ones (*Storm at night*). */
-const FACE = 30
+/** Edge of a pixel of the glow, in marched ones. Greater: no relief in lit clouds (*Storm at night*). */
+const GLOW_PIXEL = 2
+
 /** Opacity of a ray's clouds above which they have a face [–]. */
 const FACED = 0.1
 /** Light of the night's sky, as it were, on faces of clouds that are turned away from a flash [–]. 0: black (*Storm at night*). */
@@ -110,15 +109,16 @@ export class LightningPasses {
   }
 
   /**
-   * Light of the marched pixels, for `STORED_POWER`: of clouds, red and blue, times their opacity; that opacity; of the air.
+   * Light of one pixel of each block, for `STORED_POWER`: of clouds, red and blue, times their opacity; that opacity; of the air.
    */
   #light(): Vec4 {
     const { passes, field } = this.#clouds
     const { seen, viewRays } = passes
     const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
     return Fn(() => {
-      const here = uv() as unknown as Vec2
-      const ray = viewRayAt(viewRays, marchedPixel(viewRays).at)
+      const { block, at } = marchedPixel(viewRays)
+      const here = block.add(0.5).div(viewRays.frame.marchedSize).toConst() as Vec2
+      const ray = viewRayAt(viewRays, at)
       const distances = seen.distances.sample(here).level(0).toConst()
       const shares = seen.shares.sample(here).level(0).toConst()
       const end = seen.ray.sample(here).level(0).y.exp2().min(LONGEST_HAZE).toConst() as Float
@@ -127,7 +127,6 @@ export class LightningPasses {
       const hazeEnd = end.toVar() as Variable<Float>
       If(opacity.greaterThan(1e-3), () => {
         const mean = shares.dot(distances).div(opacity).toConst() as Float
-        // Clouds before each other are lit apart: what comes out is known at the nearest and the farthest point.
         const far = float(0).toVar() as Variable<Float>
         const near = float(FAR_AWAY).toVar() as Variable<Float>
         for (const i of ['x', 'y', 'z', 'w'] as const) {
@@ -135,33 +134,25 @@ export class LightningPasses {
           far.assign(isSeen.select(far.max(distances[i]), far))
           near.assign(isSeen.select(near.min(distances[i]), near))
         }
-        const [nearOut, farOut] = [near, far].map(at =>
-          this.#density.lightOut(ray.direction.mul(at).toConst()).toConst()
-        )
-        const normal = this.#normalAt(ray.direction, mean)
-        const facing = normal.dot(ray.direction).negate().toConst() as Float
-        const radiance = float(0).toVar() as Variable<Float>
-        loop('flashPoint', POINTS, point => {
-          const own = componentAt(float(point))
-          const share = shares.dot(own).toConst() as Float
-          If(share.greaterThan(0), () => {
-            const distance = distances.dot(own).toConst() as Float
-            const between = distance.sub(near).div(far.sub(near).max(1))
-            const out = mix(nearOut, farOut, between).toConst() as Vec2
-            const line = this.#lineLight(ray.direction.mul(distance).toConst())
-            const turned = normal.dot(line.xyz).div(line.w).add(1).div(2).toConst() as Float
-            const outside = turned
-              .mul(turned)
-              .mul(1 - TURNED_AWAY)
-              .add(TURNED_AWAY)
-            const face = mix(limbDarkening(facing), outside, out.y)
-            radiance.addAssign(line.w.mul(out.x).mul(share).mul(face))
-          })
-        })
+        const own = { mean, depth: far.sub(near) as Float }
+        const normal = this.#normalAt(here, at, ray.direction, own)
+        const place = ray.direction.mul(mean).toConst() as Vec3
+        const line = this.#lineLight(place)
+        const out = this.#density.lightOut(place)
+        const turned = normal.dot(line.xyz).div(line.w).add(1).div(2).toConst() as Float
+        const outside = turned
+          .mul(turned)
+          .mul(1 - TURNED_AWAY)
+          .add(TURNED_AWAY)
+        const face = mix(limbDarkening(normal.dot(ray.direction).negate()), outside, out.y)
+        const lit = line.w.mul(out.x).mul(face)
         const displacement = ray.directionView.mul(mean).toConst()
         const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
-        const lit = transmittance.mul(radiance).mul(STORED_POWER / (4 * Math.PI ** 2))
-        light.assign(vec4(lit.x, lit.z, opacity, 0))
+        const radiance = lit
+          .exp2()
+          .mul(opacity)
+          .mul(STORED_POWER / (4 * Math.PI ** 2))
+        light.assign(vec4(transmittance.xz.mul(radiance), opacity, 0))
         hazeEnd.assign(mix(end, mean.min(end), opacity))
       })
       return vec4(light.xyz, this.#hazeLight(ray.direction, hazeEnd))
@@ -172,18 +163,18 @@ export class LightningPasses {
    * Normal of what is seen of clouds: from distances of the marched pixels around, on each axis the nearer one's. To be called inside of a shader
    * function.
    *
-   * @param mean - The pixel's own distance [m].
+   * @param here - Place of the marched pixel in its textures, and `at` in the picture.
+   * @param own - The pixel's mean distance, and how deep it looks into clouds: what is finer has no face [m].
    */
-  #normalAt(direction: Vec3, mean: Float): Vec3 {
+  #normalAt(here: Vec2, at: Vec2, direction: Vec3, own: { mean: Float; depth: Float }): Vec3 {
     const { seen, viewRays } = this.#clouds.passes
     const { marchedSize, block, size } = viewRays.frame
-    const here = uv() as unknown as Vec2
-    const { at } = marchedPixel(viewRays)
+    const { mean, depth } = own
     const normal = direction.negate().toVar() as Variable<Vec3>
     for (const axis of [vec2(1, 0), vec2(0, 1)]) {
       const next = viewRayAt(viewRays, at.add(axis.mul(block).div(size)).toConst()).direction
       const aside = next.sub(direction.mul(next.dot(direction))).toConst() as Vec3
-      const width = aside.length().mul(mean).add(FACE).toConst() as Float
+      const width = aside.length().mul(mean).add(depth).toConst() as Float
       const [before, after] = [-1, 1].map(sign => {
         const place = here.add(axis.mul(sign).div(marchedSize)).toConst()
         const shares = seen.shares.sample(place).level(0).toConst() as Vec4
@@ -199,11 +190,13 @@ export class LightningPasses {
     return normal.normalize().toConst() as Vec3
   }
 
-  /** Glow by a tent: distances of clouds have grain, and with them their normals. */
+  /** Glow by a tent: marched pixels are one of each block, and it hides which. Light of opaque clouds as a colour, and of the air. */
   #smoothed(): Vec4 {
     return Fn(() => {
       const here = uv() as unknown as Vec2
-      const texel = vec2(0.5).div(this.#clouds.passes.viewRays.frame.marchedSize).toConst() as Vec2
+      const texel = vec2(0.5 * GLOW_PIXEL)
+        .div(this.#clouds.passes.viewRays.frame.marchedSize)
+        .toConst() as Vec2
       const glow = vec4(0).toVar() as Variable<Vec4>
       for (const [x, y] of [
         [-1, -1],
@@ -212,7 +205,10 @@ export class LightningPasses {
         [1, 1]
       ])
         glow.addAssign(this.#glow.sample(here.add(texel.mul(vec2(x, y)))).level(0))
-      return glow.mul(0.25)
+      // Green lies between red and blue as λ⁻⁴ does: their mean by geometry.
+      const green = glow.x.pow(1 - GREEN_SHARE).mul(glow.y.pow(GREEN_SHARE))
+      const cloud = vec3(glow.x, green, glow.y).div(glow.z.max(1e-3))
+      return vec4(cloud.mul(vec3(...CHANNEL_COLOR)), glow.w.mul(0.25))
     })()
   }
 
@@ -254,16 +250,9 @@ export class LightningPasses {
       const { size, block, jitter, marchedSize } = this.#clouds.passes.viewRays.frame
       const marched = here.mul(size).sub(jitter.add(0.5)).div(block).add(0.5).div(marchedSize)
       const glow = this.#smooth.sample(marched).level(0).toConst() as Vec4
-      const bolt = this.#bolt.sample(here).toConst()
-      const [r, g, b] = CHANNEL_COLOR
-      // Green lies between red and blue as λ⁻⁴ does: their mean by geometry, as a fraction of first order in their ratio.
-      const [more, less] = [1 + GREEN_SHARE, 1 - GREEN_SHARE]
-      const [x, y] = [glow.x, glow.y.max(1e-7)]
-      const green = x.mul(y.mul(more).add(x.mul(less))).div(y.mul(less).add(x.mul(more)))
-      const share = transmittance.oneMinus().div(glow.z.max(2.5e-4))
-      const cloud = vec3(glow.x, green, glow.y).mul(share)
-      const all = cloud.add(glow.w).mul(this.power.div(STORED_POWER))
-      result.addAssign(all.mul(vec3(r, g, b)).add(bolt))
+      const air = vec3(...CHANNEL_COLOR).mul(glow.w)
+      const light = glow.xyz.mul(transmittance.oneMinus()).add(air)
+      result.addAssign(light.mul(this.power.div(STORED_POWER)).add(this.#bolt.sample(here)))
     })
     return result
   }
@@ -290,7 +279,8 @@ export class LightningPasses {
     this.#density.update(_offset)
     this.power.value = power.all
     const { passes } = this.#clouds
-    const { x, y } = passes.viewRays.frame.marchedSize.value
+    const marched = passes.viewRays.frame.marchedSize.value
+    const [x, y] = [marched.x, marched.y].map(size => Math.floor(size / GLOW_PIXEL) + 1)
     this.#target.setSize(x, y)
     this.#smoothTarget.setSize(x, y)
     this.#pass.render(renderer, this.#target)

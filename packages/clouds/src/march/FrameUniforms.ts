@@ -105,12 +105,6 @@ const cloudForms = ({ values }: CloudField): number[] =>
     i % LAYER_STRIDE < FORM_SLOTS ? formOf(vector, i % LAYER_STRIDE) : []
   )
 
-/**
- * Marched pixels of a frame from which on four of them share a ray through what falls: as many rays as a picture of 1920 × 1080 has at medium quality.
- * Fewer: tails of virga are lost in a grid in small pictures (*Virga*); more: they cost more than large ones.
- */
-const SHARED_FROM = 33_000
-
 const _projection = new Matrix4()
 const _toPrevious = new Matrix4()
 const _delta = new Vector3()
@@ -135,8 +129,6 @@ export class FrameUniforms {
   readonly jitter = vector2()
   /** Marched pixels along an edge of those that share a ray through what falls, and the one of them that this frame's goes through. */
   readonly fallBlock = number(1)
-  /** `SHARED_FROM`; less, to try shared rays in small pictures. */
-  sharedFrom = SHARED_FROM
   readonly fallPixel = vector2()
   /** Shift of the noise of steps, in [0, 1). */
   readonly noiseShift = number()
@@ -248,11 +240,6 @@ export class FrameUniforms {
     this.#camera = (this.#camera ?? new Vector3()).copy(_position)
   }
 
-  /** Marched pixels along an edge of those that share a ray through what falls: all have their own where all pixels are marched, and where those are few. */
-  fallBlockOf(block: number, width: number, height: number): number {
-    return block === 1 || width * height < this.sharedFrom ? 1 : 2
-  }
-
   /** Chooses the pixel of each block that is marched, and the noise of its steps. */
   #setJitter(block: number, usesHistory: boolean): void {
     const order = ORDERS[block]
@@ -263,8 +250,6 @@ export class FrameUniforms {
     const round = Math.floor(this.#count / order.length)
     const shift = round * GOLDEN_RATIO + index / order.length
     this.noiseShift.value = usesHistory ? shift % 1 : 0
-    const { x, y } = this.marchedSize.value
-    this.fallBlock.value = this.fallBlockOf(block, x, y)
     const shared = ORDERS[this.fallBlock.value]
     const own = shared[round % shared.length]
     this.fallPixel.value.set(own & 1, own >> 1)
