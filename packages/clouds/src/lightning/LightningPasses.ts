@@ -8,7 +8,6 @@ import { Vector3, Vector4 } from 'three'
 import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
-import { FAR_AWAY } from '../march/tsl/layerBoundaries'
 import { marchedPixel } from '../march/tsl/marchedPixel'
 import { viewRayAt } from '../march/tsl/viewRay'
 import {
@@ -127,15 +126,9 @@ export class LightningPasses {
       const hazeEnd = end.toVar() as Variable<Float>
       If(opacity.greaterThan(1e-3), () => {
         const mean = shares.dot(distances).div(opacity).toConst() as Float
-        const far = float(0).toVar() as Variable<Float>
-        const near = float(FAR_AWAY).toVar() as Variable<Float>
-        for (const i of ['x', 'y', 'z', 'w'] as const) {
-          const isSeen = shares[i].greaterThan(0)
-          far.assign(isSeen.select(far.max(distances[i]), far))
-          near.assign(isSeen.select(near.min(distances[i]), near))
-        }
-        const own = { mean, depth: far.sub(near) as Float }
-        const normal = this.#normalAt(here, at, ray.direction, own)
+        // Four mean deviations: the length of an even stretch.
+        const depth = distances.sub(mean).abs().dot(shares).div(opacity).mul(4)
+        const normal = this.#normalAt(here, at, ray.direction, mean, depth)
         const place = ray.direction.mul(mean).toConst() as Vec3
         const line = this.#lineLight(place)
         const out = this.#density.lightOut(place)
@@ -148,10 +141,7 @@ export class LightningPasses {
         const lit = line.w.mul(out.x).mul(face)
         const displacement = ray.directionView.mul(mean).toConst()
         const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
-        const radiance = lit
-          .exp2()
-          .mul(opacity)
-          .mul(STORED_POWER / (4 * Math.PI ** 2))
+        const radiance = lit.mul(opacity).mul(STORED_POWER / (4 * Math.PI ** 2))
         light.assign(vec4(transmittance.xz.mul(radiance), opacity, 0))
         hazeEnd.assign(mix(end, mean.min(end), opacity))
       })
@@ -164,12 +154,12 @@ export class LightningPasses {
    * function.
    *
    * @param here - Place of the marched pixel in its textures, and `at` in the picture.
-   * @param own - The pixel's mean distance, and how deep it looks into clouds: what is finer has no face [m].
+   * @param mean - The pixel's mean distance [m].
+   * @param depth - How deep it looks into clouds: what is finer has no face [m].
    */
-  #normalAt(here: Vec2, at: Vec2, direction: Vec3, own: { mean: Float; depth: Float }): Vec3 {
+  #normalAt(here: Vec2, at: Vec2, direction: Vec3, mean: Float, depth: Float): Vec3 {
     const { seen, viewRays } = this.#clouds.passes
     const { marchedSize, block, size } = viewRays.frame
-    const { mean, depth } = own
     const normal = direction.negate().toVar() as Variable<Vec3>
     for (const axis of [vec2(1, 0), vec2(0, 1)]) {
       const next = viewRayAt(viewRays, at.add(axis.mul(block).div(size)).toConst()).direction
@@ -184,8 +174,7 @@ export class LightningPasses {
         return opacity.greaterThan(FACED).select(rise, STEEPEST).toConst() as Float
       })
       const slope = before.abs().lessThan(after.abs()).select(before, after)
-      const isKnown = slope.equal(STEEPEST).not()
-      normal.addAssign(aside.normalize().mul(isKnown.select(slope, 0)))
+      normal.addAssign(aside.normalize().mul(slope.lessThan(STEEPEST).select(slope, 0)))
     }
     return normal.normalize().toConst() as Vec3
   }
