@@ -126,9 +126,9 @@ export class LightningPasses {
       const hazeEnd = end.toVar() as Variable<Float>
       If(opacity.greaterThan(1e-3), () => {
         const mean = shares.dot(distances).div(opacity).toConst() as Float
-        // Four mean deviations: the length of an even stretch.
-        const depth = distances.sub(mean).abs().dot(shares).div(opacity).mul(4)
-        const normal = this.#normalAt(here, at, ray.direction, mean, depth)
+        // How deep one looks into clouds: what is finer has no face.
+        const depth = distances.sub(mean).abs().dot(shares).div(opacity).toConst()
+        const { normal, width } = this.#faceAt(here, at, ray.direction, mean, depth)
         const place = ray.direction.mul(mean).toConst() as Vec3
         const line = this.#lineLight(place)
         const out = this.#density.lightOut(place)
@@ -137,7 +137,8 @@ export class LightningPasses {
           .mul(turned)
           .mul(1 - TURNED_AWAY)
           .add(TURNED_AWAY)
-        const face = mix(limbDarkening(normal.dot(ray.direction).negate()), outside, out.y)
+        const facing = normal.dot(ray.direction).negate()
+        const face = mix(1, mix(limbDarkening(facing), outside, out.y), width.div(width.add(depth)))
         const lit = line.w.mul(out.x).mul(face)
         const displacement = ray.directionView.mul(mean).toConst()
         const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
@@ -150,33 +151,40 @@ export class LightningPasses {
   }
 
   /**
-   * Normal of what is seen of clouds: from distances of the marched pixels around, on each axis the nearer one's. To be called inside of a shader
-   * function.
+   * Normal of what is seen of clouds, and the width over which it is known [m]: from distances of the marched pixels around, on each axis the nearer
+   * one's. To be called inside of a shader function.
    *
    * @param here - Place of the marched pixel in its textures, and `at` in the picture.
-   * @param mean - The pixel's mean distance [m].
-   * @param depth - How deep it looks into clouds: what is finer has no face [m].
+   * @param mean - The pixel's mean distance, and `depth` its mean deviation [m].
    */
-  #normalAt(here: Vec2, at: Vec2, direction: Vec3, mean: Float, depth: Float): Vec3 {
+  #faceAt(
+    here: Vec2,
+    at: Vec2,
+    direction: Vec3,
+    mean: Float,
+    depth: Float
+  ): { normal: Vec3; width: Float } {
     const { seen, viewRays } = this.#clouds.passes
     const { marchedSize, block, size } = viewRays.frame
+    const width = float(0).toVar() as Variable<Float>
     const normal = direction.negate().toVar() as Variable<Vec3>
     for (const axis of [vec2(1, 0), vec2(0, 1)]) {
-      const next = viewRayAt(viewRays, at.add(axis.mul(block).div(size)).toConst()).direction
+      const step = axis.mul(GLOW_PIXEL)
+      const next = viewRayAt(viewRays, at.add(step.mul(block).div(size)).toConst()).direction
       const aside = next.sub(direction.mul(next.dot(direction))).toConst() as Vec3
-      const width = aside.length().mul(mean).add(depth).toConst() as Float
+      width.assign(aside.length().mul(mean))
       const [before, after] = [-1, 1].map(sign => {
-        const place = here.add(axis.mul(sign).div(marchedSize)).toConst()
+        const place = here.add(step.mul(sign).div(marchedSize)).toConst()
         const shares = seen.shares.sample(place).level(0).toConst() as Vec4
         const opacity = shares.dot(vec4(1)).toConst() as Float
         const distance = shares.dot(seen.distances.sample(place).level(0)).div(opacity.max(1e-3))
-        const rise = distance.sub(mean).mul(sign).div(width)
+        const rise = distance.sub(mean).mul(sign).div(width.add(depth))
         return opacity.greaterThan(FACED).select(rise, STEEPEST).toConst() as Float
       })
       const slope = before.abs().lessThan(after.abs()).select(before, after)
       normal.addAssign(aside.normalize().mul(slope.lessThan(STEEPEST).select(slope, 0)))
     }
-    return normal.normalize().toConst() as Vec3
+    return { normal: normal.normalize().toConst() as Vec3, width }
   }
 
   /** Glow by a tent: marched pixels are one of each block, and it hides which. Light of opaque clouds as a colour, and of the air. */
