@@ -23,7 +23,7 @@ export const falling = [
     clouds: {
       preset: 'shower',
       coverage: 0.2,
-      layer: { baseAltitude: 1500, precipitation: { rate: 8 } }
+      layer: { baseAltitude: 1500, precipitation: { rate: 8, streaks: 1 } }
     },
     place: { longitude: 140.6426, latitude: 35.2626 },
     altitude: 60,
