@@ -179,12 +179,12 @@ export class LightningPasses {
         const opacity = shares.dot(vec4(1)).toConst() as Float
         const distance = shares.dot(seen.distances.sample(place).level(0)).div(opacity.max(1e-3))
         const rise = distance.sub(mean).mul(sign).div(width.add(depth))
-        return opacity.greaterThan(FACED).select(rise, STEEPEST).toConst() as Float
+        return opacity.greaterThan(FACED).select(rise, STEEPEST).toConst()
       })
       const slope = before.abs().lessThan(after.abs()).select(before, after)
       normal.addAssign(aside.normalize().mul(slope.lessThan(STEEPEST).select(slope, 0)))
     }
-    return { normal: normal.normalize().toConst() as Vec3, width }
+    return { normal: normal.normalize().toConst(), width }
   }
 
   /** Glow by a tent: marched pixels are one of each block, and it hides which. Light of opaque clouds as a colour, and of the air. */
@@ -219,7 +219,7 @@ export class LightningPasses {
       const light = meanInverseSquare(from, to, float(CLOUD_SOFTNESS))
       sum.addAssign(vec4(from.add(to).normalize(), 1).mul(light))
     })
-    return sum.div(STEM_POINTS - 1).toConst() as Vec4
+    return sum.div(STEM_POINTS - 1).toConst()
   }
 
   /** Light that the air on a ray scatters once, without direction, for `STORED_POWER` [cd/m²]: from three points of the stem. */

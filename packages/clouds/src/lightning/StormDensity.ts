@@ -173,7 +173,7 @@ export class StormDensity {
       const depth = float(0).toVar() as Variable<Float>
       const out = float(0).toVar() as Variable<Float>
       const outOf = (): Float =>
-        out.greaterThan(0).select(out, open).mul(passed(depth)).min(THINNEST).toConst() as Float
+        out.greaterThan(0).select(out, open).mul(passed(depth)).min(THINNEST).toConst()
       loop('lightStep', SAMPLES, index => {
         // Finest at both ends: what is before the place makes its form.
         const even = float(index).add(0.5).div(SAMPLES).toConst() as Float
@@ -209,14 +209,14 @@ export class StormDensity {
       const row = index.div(TILES[0]).floor().toConst() as Float
       const tile = vec2(index.sub(row.mul(TILES[0])), row)
       const at = tile.add(flat).div(vec2(...TILES))
-      return box.sample(at.toConst() as Vec2).level(0).xy
+      return box.sample(at.toConst()).level(0).xy
     })
-    return mix(below, above, slice.sub(first)).toConst() as Vec2
+    return mix(below, above, slice.sub(first)).toConst()
   }
 
   /** Height in the storm, from 0 at its base to 1 at its top. */
   #heightOf(place: Vec3): Float {
-    return place.z.sub(this.#base).div(this.#thickness).toConst() as Float
+    return place.z.sub(this.#base).div(this.#thickness).toConst()
   }
 
   /** Scaled extinction at a place in the flash's frame [1/m]. */
@@ -234,7 +234,7 @@ export class StormDensity {
   lightOut(offset: Vec3): Vec2 {
     const shifted = offset.sub(this.#place).toConst() as Vec3
     const [east, north, up] = this.#axes.map(axis => shifted.dot(axis))
-    return this.#read(this.#light, vec3(east, north, up).toConst() as Vec3)
+    return this.#read(this.#light, vec3(east, north, up).toConst())
   }
 
   /** Follows the camera. @param offset - The flash's place from the camera, in the mapped space [m]. */

@@ -118,7 +118,7 @@ function fallAlong(
   // Streaks stay sharp: drops that have left a cloudlet together are of one size where they arrive together.
   const more = speed?.mul(2 * fallForm.lagSpread).mul(lag.x)
   const from = more ? offset.add(nodes.windAxis.mul(more).cross(up)).toConst() : offset
-  const above: CloudSample = { offset: from as Vec3, altitude, up, distance }
+  const above: CloudSample = { offset: from, altitude, up, distance }
   const subpoint = subpointOffset(field, above).toConst() as Vec3
   const column =
     map?.fallAt(layer.index, subpoint) ??
