@@ -83,7 +83,7 @@ export class CloudBench {
     const scenePass = pass(new Scene().add(this.#globe), camera, { samples: 0 })
     const depth = scenePass.getTextureNode('depth')
     this.#air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
-    const rains = [...layers].some(layer => layer.precipitation !== null)
+    const rains = [...layers].some(layer => layer.precipitation?.rate)
     const drops = hasBows ? raindrops() : undefined
     const precipitation = rains ? precipitationShafts({ drops }) : undefined
     const options = { noise: this.#noise, light: this.#light, precipitation }

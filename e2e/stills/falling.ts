@@ -23,7 +23,7 @@ export const falling = [
     clouds: {
       preset: 'shower',
       coverage: 0.2,
-      layer: { baseAltitude: 1500, precipitation: { rate: 8 } }
+      layer: { baseAltitude: 1500, precipitation: { rate: 8, streaks: 1 } }
     },
     place: { longitude: 140.6426, latitude: 35.2626 },
     altitude: 60,
@@ -77,12 +77,18 @@ export const falling = [
       'steady rain that begins some kilometres ahead: grey bands from a closed deck to the hills, which fade one behind the other',
     clouds: {
       preset: 'nimbostratus',
-      layer: { precipitation: { rate: 3, share: 0.6, streaks: 2 } }
+      coverage: 0.92,
+      layer: {
+        baseAltitude: 1400,
+        topAltitude: 4300,
+        precipitation: { rate: 12, share: 0.3, streaks: 2 }
+      }
     },
     place: { longitude: 22.3, latitude: 46.7 },
     altitude: 60,
     sun: { elevation: 35, azimuth: 280 },
     view: { azimuth: 30, pitch: 7 },
+    fieldOfView: 45,
     land: 'hills'
   }
 ] as const

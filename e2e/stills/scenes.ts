@@ -190,6 +190,11 @@ const valleys: ValleyStill[] = [
     valley: { view: 'village', hour: 12.3, date: Date.UTC(2026, 10, 1), weather: 'shower' }
   },
   {
+    name: 'valley-storm',
+    about: 'towers over the valley at evening, dark shafts of rain below them',
+    valley: { view: 'village', hour: 19, weather: 'storm' }
+  },
+  {
     name: 'valley-snow',
     about: 'snow on ground and roofs, flakes around the camera, mountains lost in what falls',
     valley: { view: 'village', hour: 11, date: Date.UTC(2026, 11, 19), weather: 'snow' }

@@ -44,6 +44,7 @@ export const VIEWS = {
   bow: {
     label: 'Bow in a shower',
     clouds: 'shower',
+    fall: { streaks: 1 },
     coverage: 0.2,
     layer: { baseAltitude: 1500 },
     azimuth: 270,

@@ -13,6 +13,7 @@ import { weathers } from './valley/weather'
 const code = storyCode(
   ['valleyAir.ts', 'sky and light'],
   ['valleyAir.ts', 'everything'],
+  ['valley/flashes.ts', 'lightning'],
   ['valleyFactors.ts', 'factors']
 )
 
@@ -38,7 +39,7 @@ const factor = (name: string, description: string): object => ({
 
 const meta: Meta<ValleyArgs> = {
   title: 'Valley, all day',
-  render: mount(createValley, code),
+  render: mount(createValley, code, ({ flashes }) => String(flashes)),
   argTypes: {
     view: {
       name: 'Place',
@@ -80,6 +81,10 @@ const meta: Meta<ValleyArgs> = {
     haze: part('Haze'),
     mist: part('Mist'),
     precipitation: part('Rain and snow'),
+    flashes: {
+      ...part('Lightning'),
+      description: 'In storms. Off at first: flashes may harm people with photosensitive epilepsy'
+    },
     moon: part('Moon'),
     stars: part('Stars and Milky Way'),
     airglow: part('Airglow'),
@@ -153,6 +158,9 @@ export const Night: Story = {
 export const Shower: Story = {
   args: { hour: 12.3, date: Date.UTC(2026, 10, 1), weather: 'shower', dayLength: 1800 }
 }
+
+/** A storm on a summer evening; switch the lightning on. */
+export const Storm: Story = { args: { hour: 19, weather: 'storm', dayLength: 1800 } }
 
 /** Snowfall in winter: the ground whitens. */
 export const Snow: Story = {

@@ -1,6 +1,6 @@
-import { lightning } from '@welkin/clouds'
+import { CloudLayers, lightning } from '@welkin/clouds'
 import { BoxGeometry, Mesh, MeshBasicMaterial, Vector3 } from 'three'
-import { float, vec3 } from 'three/tsl'
+import { float, vec3, vec4 } from 'three/tsl'
 import { meanInverseSquareOf } from '../../../packages/clouds/test/twins/lightning'
 import {
   CHANNEL_COLOR,
@@ -8,13 +8,13 @@ import {
   type Point
 } from '../../../packages/clouds/src/lightning/channel'
 import { flashCurve, lightBetween } from '../../../packages/clouds/src/lightning/flashCurve'
-import { OPEN, REACH } from '../../../packages/clouds/src/lightning/StormDensity'
+import { OPEN, REACH, StormDensity } from '../../../packages/clouds/src/lightning/StormDensity'
 import { LEAST_TRANSMITTANCE } from '../../../packages/clouds/src/light/tsl/lighting'
 import { POINTS } from '../../../packages/clouds/src/march/tsl/seenPoints'
 import { seeded } from '../../../packages/clouds/src/lightning/random'
 import { meanInverseSquare } from '../../../packages/clouds/src/lightning/tsl/lineLight'
 import { random } from '../harness/atmosphere'
-import { coarse, fog, inFog, middle, type CloudView } from '../harness/cloud-view'
+import { coarse, CloudView, fog, inFog, middle } from '../harness/cloud-view'
 import { cloudExtinction } from '../harness/cloud-extinction'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
@@ -46,10 +46,14 @@ const SEED = 9
 /** Steps of the fog's height over which its density is summed up. */
 const HEIGHTS = 400
 
-/** Scaled depths of the fog from its base up to even heights, north of the camera [m]: that of its ends is less. */
-async function depthsUpwards({ renderer, node }: CloudView, north: number): Promise<number[]> {
+/** Scaled depths of clouds from a base up to even heights, by default of the fog, north of the camera [m]: that of its ends is less. */
+async function depthsUpwards(
+  { renderer, node }: CloudView,
+  north: number,
+  [base, top] = [fog.baseAltitude!, fog.topAltitude!]
+): Promise<number[]> {
   const { field } = node
-  const [base, thickness] = [fog.baseAltitude!, fog.topAltitude! - fog.baseAltitude!]
+  const thickness = top - base
   const altitudes = Array.from(
     { length: HEIGHTS },
     (_, i) => base + (thickness * (i + 0.5)) / HEIGHTS
@@ -89,7 +93,6 @@ function meanWayOut(height: number, depths: readonly number[]): number {
 gpuTest('fog glows about a flash as in float64, and not before or after it', t =>
   inFog(t, async view => {
     const { node, atmosphere, camera, scene } = view
-    // The glow is drawn for each third of the marched pixels: with blocks, a picture this small has too few.
     node.quality = { ...coarse, block: 1 }
     // At night: half floats beside daylight would round a glow away.
     atmosphere.setSunAngles(-30, 150)
@@ -187,5 +190,48 @@ gpuTest('a storm is struck where its columns are strong, at the same place for t
     t.note(`${distances.map(d => d.toFixed(0)).join(', ')} m`)
     expectClose([distances[1]], [distances[0]], { relative: 1e-6 }, 'distance')
     expectTrue(distances[0] > 500 && distances[0] < 30_000, 'it is in reach')
+  })
+)
+
+gpuTest('light of a flash passes clouds of other layers as slabs of their depth', t =>
+  inFog(t, async ({ renderer, atmosphere }, shared) => {
+    const [base, top] = [500, 4500]
+    const layers = new CloudLayers([
+      { ...fog, topAltitude: 1500 },
+      { ...fog, baseAltitude: 2500, topAltitude: top }
+    ])
+    const view = new CloudView(renderer, atmosphere, layers, shared)
+    view.camera.position.set(0, 2000, 0)
+    await view.draw(2)
+    const { space, parameters } = atmosphere
+    const viewpoint = space.position(view.camera.position, new Vector3())
+    const up = viewpoint.clone().normalize()
+    const east = new Vector3(0, 0, 1).cross(up).normalize()
+    const axes = [east, up.clone().cross(east), up] as const
+    const place = up.clone().multiplyScalar(parameters.bottomRadius).sub(viewpoint)
+    const storm = new StormDensity(view.node.field)
+    const stem = Array.from({ length: 5 }, (): Point => [0, 0, 1000])
+    storm.bake(renderer, place, { axes, stem, place, pieces: [], brightLength: 1 }, { base, top })
+    const altitudes = [1300, 2000, 3000, 4000]
+    const found = await evaluateOnGpu(
+      renderer,
+      altitudes.map(altitude => up.clone().multiplyScalar(altitude).add(place).toArray()),
+      input => vec4(storm.lightOut(input.xyz), 0, 0)
+    )
+    const depths = await depthsUpwards(view, 0, [base, top])
+    const depthTo = (altitude: number): number =>
+      depths[Math.round(((altitude - base) / (top - base)) * HEIGHTS)]
+    const [own, between, near, far] = altitudes.map((_, i) => found[4 * i])
+    const others = altitudes.map((_, i) => found[4 * i + 1])
+    expectClose(others, [0, 1, 1, 1], { absolute: 0.05 }, 'out of another cloud')
+    // Within a cloud, by the depth from the flash.
+    const out = (altitude: number): number => 1 / (depthTo(altitude) - depthTo(1000) + OPEN)
+    expectClose([own / between], [out(1300) / out(1500)], { relative: 0.08 }, 'own cloud')
+    const passed = (altitude: number): number => OPEN / (depthTo(altitude) - depthTo(2500) + OPEN)
+    t.note(`${(near / between).toFixed(3)} and ${(far / between).toFixed(3)} pass`)
+    expectClose([near / between], [passed(3000)], { relative: 0.08 }, 'into the next cloud')
+    expectClose([far / between], [passed(4000)], { relative: 0.08 }, 'through the next cloud')
+    storm.dispose()
+    view.dispose()
   })
 )

@@ -9,7 +9,7 @@ import {
 } from '@welkin/atmosphere'
 import type { Atmosphere, LightShaftsQuality } from '@welkin/atmosphere'
 import { cloudEnvironment, CloudLayers } from '@welkin/clouds'
-import type { CloudQuality, CloudQualityName } from '@welkin/clouds'
+import type { CloudQuality, CloudQualityName, Lightning } from '@welkin/clouds'
 import { MathUtils, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
@@ -35,6 +35,7 @@ import { StepClock } from './StepClock'
 import { setLit } from './VertexLitMaterial'
 import { createVillage, doors } from './village'
 import { VIEWS, type ValleyName } from './views'
+import { valleyFlashes } from './flashes'
 import { valleyLayers, type Weather, WeatherBlend, type WeatherName } from './weather'
 
 /** State of the valley. */
@@ -42,6 +43,8 @@ export interface ValleyState extends ValleyFeatures, ValleyEffects, ValleyFactor
   /** Reflections of the screen (SSR): the lake mirrors the picture itself. */
   reflections: boolean
   weather: WeatherName
+  /** Lightning in storms; not to be changed later. */
+  flashes: boolean
   /** Place on the Earth [degrees]. */
   latitude: number
   longitude: number
@@ -116,6 +119,7 @@ export class Valley {
   readonly #water
   readonly #node
   readonly #shafts
+  readonly #storm: Lightning | undefined
   readonly #targets: FactorTargets
   readonly #cascades
   readonly #cascadeTurns: CascadeTurns
@@ -154,6 +158,7 @@ export class Valley {
 
     this.#node = node
     this.#shafts = shafts
+    if (state.flashes) this.#storm = valleyFlashes(scene, node)
     this.exposure = exposure
     // Coarse: the lake mirrors the picture itself where it can.
     const overlay = cloudEnvironment(node, { size: 128 })
@@ -168,6 +173,7 @@ export class Valley {
     this.#setDay(state.hour)
     this.#dispose.push(
       () => this.pipeline.dispose(),
+      () => this.#storm?.dispose(),
       ...[this.#finish, exposure, overlay, this.#falling, this.#environment, node, shafts].map(
         each => () => each.dispose()
       ),
@@ -249,10 +255,11 @@ export class Valley {
   }
 
   #applyWeather(atOnce = false): void {
-    const { turbidity } = this.#weather.current
+    const { turbidity, flashes } = this.#weather.current
     const { clouds, cloudShadows, precipitation, quality } = this.#state
     this.#node.quality = this.#weather.qualityOf(quality, this.#state.mist)
     this.#falling.set(this.#falls(), atOnce)
+    this.#storm?.set({ enabled: clouds && flashes > 0, rate: flashes })
     this.#weather.apply(this.#layers, clouds, this.#state.mist, cloudShadows, precipitation)
     // In steps: the tables are made anew for each.
     const stepped = Math.round(turbidity * 4) / 4

@@ -17,6 +17,7 @@ export const openingState = {
   haze: true,
   mist: true,
   precipitation: true,
+  flashes: false,
   moon: true,
   stars: true,
   airglow: true,

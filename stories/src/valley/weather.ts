@@ -14,18 +14,32 @@ export interface Weather {
   /** Rates of rain from cumulus, and of snow from the deck, as water [mm/h]. */
   readonly rain: number
   readonly snow: number
+  /** Altitude of the tops of cumulus [m], and flashes of lightning a minute. */
+  readonly tops: number
+  readonly flashes: number
 }
 
-const dry = { rain: 0, snow: 0 }
+const calm = { rain: 0, snow: 0, tops: 2700, flashes: 0 }
 
 export const weathers = {
-  fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...dry },
-  clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...dry },
-  broken: { cumulus: 0.4, deck: 0.55, cirrus: 0, turbidity: 2.5, mist: 0, ...dry },
-  mist: { cumulus: 0, deck: 0, cirrus: 0, turbidity: 3, mist: 1, ...dry },
-  overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...dry },
-  shower: { cumulus: 0, deck: 0.75, cirrus: 0, turbidity: 2.25, mist: 0, rain: 6, snow: 0 },
-  snow: { cumulus: 0, deck: 0.95, cirrus: 0, turbidity: 3, mist: 0, rain: 0, snow: 1.5 }
+  fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...calm },
+  clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...calm },
+  broken: { cumulus: 0.4, deck: 0.55, cirrus: 0, turbidity: 2.5, mist: 0, ...calm },
+  mist: { cumulus: 0, deck: 0, cirrus: 0, turbidity: 3, mist: 1, ...calm },
+  overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...calm },
+  shower: { cumulus: 0, deck: 0.75, cirrus: 0, turbidity: 2.25, mist: 0, ...calm, rain: 6 },
+  snow: { cumulus: 0, deck: 0.95, cirrus: 0, turbidity: 3, mist: 0, ...calm, snow: 1.5 },
+  storm: {
+    cumulus: 0.45,
+    deck: 0.4,
+    cirrus: 0,
+    turbidity: 2.5,
+    mist: 0,
+    ...calm,
+    rain: 8,
+    tops: 7500,
+    flashes: 4
+  }
 } satisfies Record<string, Weather>
 
 export type WeatherName = keyof typeof weathers
@@ -56,7 +70,7 @@ const fogForm: typeof deckForm = {
 
 /** Layers that `WeatherBlend` sets: cumulus, a deck over them or banks of fog, cirrus. */
 export const valleyLayers = [
-  { baseAltitude: 1500, topAltitude: 2700, coverage: 0, wind: { east: 6, north: 2 } },
+  { baseAltitude: 1500, topAltitude: calm.tops, coverage: 0, wind: { east: 6, north: 2 } },
   {
     ...deckForm,
     coverage: 0,
@@ -144,7 +158,8 @@ export class WeatherBlend {
     shadow: boolean,
     falls: boolean
   ): void {
-    const { cumulus, cirrus, rain, snow } = this.current
+    const { cumulus, cirrus, rain, snow, tops } = this.current
+    layers.at(0).set({ topAltitude: tops })
     const rates = [rain * SHAFTS[0], rain * SHAFTS[1] + snow, 0]
     // The deck and banks of fog are one layer: one goes before the other comes.
     const foggy = this.#fog(hasMist)

@@ -60,7 +60,10 @@ export interface CloudLayerParameters {
   readonly weatherWeights: readonly [number, number, number, number]
   /** Wind that the layer drifts with [m/s]. */
   readonly wind: CloudWind
-  /** Rain, snow or hail from it; seen if `clouds` has a `precipitation`. Null, the default, for nothing. */
+  /**
+   * Rain, snow or hail from it; seen if `clouds` has a `precipitation`. What is left out stays as it is. Null, the default, for nothing, and
+   * for defaults from then on.
+   */
   readonly precipitation: CloudPrecipitation | null
   /** True for a layer that casts shadows. */
   readonly shadow: boolean
@@ -197,7 +200,7 @@ function merge(
   const [a, b, c, d] = merged.weatherWeights
   const weatherWeights = Object.freeze([a, b, c, d] as const)
   const { precipitation: falls } = merged
-  const precipitation = falls && checkedPrecipitation(falls)
+  const precipitation = falls && checkedPrecipitation(falls, base.precipitation)
   const wind = Object.freeze({ ...merged.wind })
   return Object.freeze({ ...merged, weatherWeights, wind, precipitation })
 }

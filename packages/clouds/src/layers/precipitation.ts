@@ -48,10 +48,18 @@ const ranges = {
   streaks: [0, 3]
 } as const
 
-/** Precipitation with all its parameters, frozen. @throws If one is unknown or out of its range. */
-export function checkedPrecipitation(given: CloudPrecipitation): Required<CloudPrecipitation> {
+/**
+ * Precipitation with all its parameters, frozen.
+ *
+ * @param before - The layer's so far, of which what is not given stays.
+ * @throws If one is unknown or out of its range.
+ */
+export function checkedPrecipitation(
+  given: CloudPrecipitation,
+  before: CloudPrecipitation | null
+): Required<CloudPrecipitation> {
   const where = 'CloudLayer.precipitation'
-  const all = withDefaults(where, dry, given)
+  const all = withDefaults(where, { ...dry, ...before }, given)
   checkRanges(where, all, ranges)
   return Object.freeze(all)
 }

@@ -48,6 +48,9 @@ const storm: Partial<CloudLayerParameters> = {
   wind: { east: 12, north: 3 }
 }
 
+/** Rain and hail of a storm with an anvil, without their rate. */
+const hail = { share: 0.4, freezingLevel: 3000, hail: 0.4 }
+
 const smallCumulus: Partial<CloudLayerParameters> = {
   ...cumulus,
   baseAltitude: 800,
@@ -115,7 +118,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     }
   ],
   overcast: [overcast],
-  cumulonimbus: [storm, smallCumulus],
+  cumulonimbus: [{ ...storm, precipitation: { rate: 0, ...hail } }, smallCumulus],
   altocumulus: [altocumulus],
   cirrus: [cirrus],
   mixed: [
@@ -130,7 +133,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       topAltitude: 7000,
       weatherScale: 0.5,
       anvil: 0.4,
-      precipitation: { rate: 12 }
+      precipitation: { rate: 12, streaks: 1.8 }
     },
     cumulus
   ],
@@ -144,10 +147,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 }
     }
   ],
-  hailstorm: [
-    { ...storm, precipitation: { rate: 30, share: 0.4, freezingLevel: 3000, hail: 0.4 } },
-    smallCumulus
-  ]
+  hailstorm: [{ ...storm, precipitation: { rate: 30, ...hail } }, smallCumulus]
 }
 
 /** All names of {@link cloudPreset}, for menus. */
@@ -169,7 +169,8 @@ export const cloudPresetNames = /*#__PURE__*/ Object.keys(presets) as readonly C
  * - `snowShower`: towering cumulus in cold air, with snow of 1.5 mm/h of water
  * - `hailstorm`: `cumulonimbus` with rain of 30 mm/h, and shafts of hail in its midst
  *
- * What falls from the last four is seen if `clouds` has a `precipitation`.
+ * What falls from the last four is seen if `clouds` has a `precipitation`. `cumulonimbus` is dry until its first layer has a rate, and then has hail, too:
+ * `layers.at(0).precipitation = { rate: 30 }`.
  *
  * @param count - Least number of layers, to take other presets by `copy` later.
  * @throws If there is no preset of this name, or the count is none.

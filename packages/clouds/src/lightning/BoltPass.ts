@@ -25,8 +25,9 @@ import { CHANNEL_COLOR, type PlacedChannel } from './channel'
 
 /** Deviation of a channel's width in the picture [pixels]. Smaller: steps at its edges. */
 const WIDTH = 0.8
-/** Half width of what is drawn of it [pixels]. */
+/** Half width of what is drawn of it, and by how much it is drawn beyond the ends of a piece, where the next begins [pixels]. */
 const HALF_WIDTH = 3 * WIDTH
+const BEYOND = 1
 /** Greatest luminance that half floats keep. */
 const GREATEST = 6e4
 /** Part of the distance over which clouds hide a channel. */
@@ -174,7 +175,7 @@ export class BoltPass {
         .greaterThan(1e-3)
         .select(line.div(length.max(1e-3)), vec2(1, 0))
         .toConst() as Vec2
-      const beyond = corner.x.mul(2).sub(1).mul(HALF_WIDTH)
+      const beyond = corner.x.mul(2).sub(1).mul(BEYOND)
       const at = length.mul(corner.x).add(beyond).toConst() as Float
       const across = corner.y.mul(HALF_WIDTH).toConst() as Float
       const pixel = start.add(along.mul(at)).add(vec2(along.y.negate(), along.x).mul(across))

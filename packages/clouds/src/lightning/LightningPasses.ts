@@ -7,10 +7,8 @@ import {
 import { Vector3, Vector4 } from 'three'
 import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { componentAt } from '../density/tsl/componentAt'
 import type { CloudsNode } from '../march/CloudsNode'
-import { FAR_AWAY } from '../march/tsl/layerBoundaries'
-import { POINTS } from '../march/tsl/seenPoints'
+import { marchedPixel } from '../march/tsl/marchedPixel'
 import { viewRayAt } from '../march/tsl/viewRay'
 import {
   loop,
@@ -38,14 +36,30 @@ const HAZE_SOFTNESS = 25
 /** Longest path through lit haze [m]. */
 const LONGEST_HAZE = 60_000
 
-/** Edge of a pixel of the glow, in marched ones. Greater: no relief in lit clouds (*Storm at night*); 2: 0.03 ms more. */
-const GLOW_PIXEL = 3
+/** Edge of a pixel of the glow, in marched ones. Greater: no relief in lit clouds (*Storm at night*). */
+const GLOW_PIXEL = 2
+
+/** Opacity of a ray's clouds above which they have a face [–]. */
+const FACED = 0.1
+/** Light of the night's sky, as it were, on faces of clouds that are turned away from a flash [–]. 0: black (*Storm at night*). */
+const TURNED_AWAY = 0.15
 
 /** Power for which half floats hold light: 1e-9 of it is left 2 km from the channel [lm]. */
 const STORED_POWER = 1e9
 
 /** Place of 550 nm between 630 and 440 nm in λ⁻⁴: exponent of blue in green. */
 const GREEN_SHARE = (550 ** -4 - 630 ** -4) / (440 ** -4 - 630 ** -4)
+
+/** Slope of the clouds that stands for none. */
+const STEEPEST = 1e6
+
+/**
+ * Radiance of a cloud's surface that is lit from inside, over that of an even one [–]: (1 + 1.5 μ)/2, of which the mean over the light that leaves is 1.
+ *
+ * @param facing - μ, cosine between the surface's normal and the way to the eye.
+ * @see Milne 1930, "Thermodynamics of the stars", Handbuch der Astrophysik 3, §33: limb darkening in Eddington's approximation
+ */
+const limbDarkening = (facing: Float): Float => facing.clamp(0, 1).mul(0.75).add(0.5)
 
 const _offset = new Vector3()
 const _row = new Vector3()
@@ -88,15 +102,9 @@ export class LightningPasses {
   }
 
   /** Takes a channel in a storm: a layer, and its base and top. */
-  begin(
-    renderer: Renderer,
-    viewpoint: Vector3,
-    channel: PlacedChannel,
-    storm: StormColumn,
-    layer: number
-  ): void {
+  begin(renderer: Renderer, viewpoint: Vector3, channel: PlacedChannel, storm: StormColumn): void {
     this.#bolt.channel = channel
-    this.#density.bake(renderer, _offset.copy(channel.place).sub(viewpoint), channel, storm, layer)
+    this.#density.bake(renderer, _offset.copy(channel.place).sub(viewpoint), channel, storm)
   }
 
   /**
@@ -107,8 +115,9 @@ export class LightningPasses {
     const { seen, viewRays } = passes
     const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
     return Fn(() => {
-      const here = uv() as unknown as Vec2
-      const ray = viewRayAt(viewRays, here)
+      const { block, at } = marchedPixel(viewRays)
+      const here = block.add(0.5).div(viewRays.frame.marchedSize).toConst() as Vec2
+      const ray = viewRayAt(viewRays, at)
       const distances = seen.distances.sample(here).level(0).toConst()
       const shares = seen.shares.sample(here).level(0).toConst()
       const end = seen.ray.sample(here).level(0).y.exp2().min(LONGEST_HAZE).toConst() as Float
@@ -117,43 +126,73 @@ export class LightningPasses {
       const hazeEnd = end.toVar() as Variable<Float>
       If(opacity.greaterThan(1e-3), () => {
         const mean = shares.dot(distances).div(opacity).toConst() as Float
-        // Clouds before each other are lit apart: what comes out is known at the nearest and the farthest point.
-        const far = float(0).toVar() as Variable<Float>
-        const near = float(FAR_AWAY).toVar() as Variable<Float>
-        for (const i of ['x', 'y', 'z', 'w'] as const) {
-          const isSeen = shares[i].greaterThan(0)
-          far.assign(isSeen.select(far.max(distances[i]), far))
-          near.assign(isSeen.select(near.min(distances[i]), near))
-        }
-        const outAt = (at: Float): Float =>
-          this.#density.lightOut(ray.direction.mul(at).toConst()).toConst()
-        const nearOut = outAt(near)
-        const farOut = nearOut.toVar() as Variable<Float>
-        If(far.sub(near).greaterThan(CLOUD_SOFTNESS), () => {
-          farOut.assign(outAt(far))
-        })
-        const radiance = float(0).toVar() as Variable<Float>
-        loop('flashPoint', POINTS, point => {
-          const own = componentAt(float(point))
-          const share = shares.dot(own).toConst() as Float
-          If(share.greaterThan(0), () => {
-            const distance = distances.dot(own).toConst() as Float
-            const between = distance.sub(near).div(far.sub(near).max(1))
-            const out = mix(nearOut, farOut, between).mul(share)
-            radiance.addAssign(this.#lineLight(ray.direction.mul(distance).toConst()).mul(out))
-          })
-        })
+        // How deep one looks into clouds: what is finer has no face.
+        const depth = distances.sub(mean).abs().dot(shares).div(opacity).toConst()
+        const { normal, width } = this.#faceAt(here, at, ray.direction, mean, depth)
+        const place = ray.direction.mul(mean).toConst() as Vec3
+        const line = this.#lineLight(place)
+        const out = this.#density.lightOut(place)
+        const turned = normal.dot(line.xyz).div(line.w).add(1).div(2).toConst() as Float
+        const outside = turned
+          .mul(turned)
+          .mul(1 - TURNED_AWAY)
+          .add(TURNED_AWAY)
+        const facing = normal.dot(ray.direction).negate()
+        const square = width.mul(width)
+        const known = square.div(square.add(depth.mul(depth)))
+        const face = mix(1, mix(limbDarkening(facing), outside, out.y), known)
+        const lit = line.w.mul(out.x).mul(face)
         const displacement = ray.directionView.mul(mean).toConst()
         const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
-        const lit = transmittance.mul(radiance).mul(STORED_POWER / (4 * Math.PI ** 2))
-        light.assign(vec4(lit.x, lit.z, opacity, 0))
+        const radiance = lit.mul(opacity).mul(STORED_POWER / (4 * Math.PI ** 2))
+        light.assign(vec4(transmittance.xz.mul(radiance), opacity, 0))
         hazeEnd.assign(mix(end, mean.min(end), opacity))
       })
       return vec4(light.xyz, this.#hazeLight(ray.direction, hazeEnd))
     })()
   }
 
-  /** Glow by a tent: marched pixels are one of each block, and it hides which. */
+  /**
+   * Normal of what is seen of clouds, and the width over which it is known [m]: from distances of the marched pixels around, on each axis the nearer
+   * one's. To be called inside of a shader function.
+   *
+   * @param here - Place of the marched pixel in its textures, and `at` in the picture.
+   * @param mean - The pixel's mean distance, and `depth` its mean deviation [m].
+   */
+  #faceAt(
+    here: Vec2,
+    at: Vec2,
+    direction: Vec3,
+    mean: Float,
+    depth: Float
+  ): { normal: Vec3; width: Float } {
+    const { seen, viewRays } = this.#clouds.passes
+    const { marchedSize, block, size } = viewRays.frame
+    const width = float(0).toVar() as Variable<Float>
+    const normal = direction.negate().toVar() as Variable<Vec3>
+    for (const axis of [vec2(1, 0), vec2(0, 1)]) {
+      const step = axis.mul(GLOW_PIXEL)
+      const next = viewRayAt(viewRays, at.add(step.mul(block).div(size)).toConst()).direction
+      const aside = next.sub(direction.mul(next.dot(direction))).toConst() as Vec3
+      width.assign(aside.length().mul(mean))
+      const [before, after] = [-1, 1].map(sign => {
+        const place = here.add(step.mul(sign).div(marchedSize)).toConst()
+        const shares = seen.shares.sample(place).level(0).toConst() as Vec4
+        const opacity = shares.dot(vec4(1)).toConst() as Float
+        const distance = shares.dot(seen.distances.sample(place).level(0)).div(opacity.max(1e-3))
+        const rise = distance
+          .sub(mean)
+          .mul(sign)
+          .div(width.add(depth.mul(0.25)))
+        return opacity.greaterThan(FACED).select(rise, STEEPEST).toConst()
+      })
+      const slope = before.abs().lessThan(after.abs()).select(before, after)
+      normal.addAssign(aside.normalize().mul(slope.lessThan(STEEPEST).select(slope, 0)))
+    }
+    return { normal: normal.normalize().toConst(), width }
+  }
+
+  /** Glow by a tent: marched pixels are one of each block, and it hides which. Light of opaque clouds as a colour, and of the air. */
   #smoothed(): Vec4 {
     return Fn(() => {
       const here = uv() as unknown as Vec2
@@ -168,20 +207,24 @@ export class LightningPasses {
         [1, 1]
       ])
         glow.addAssign(this.#glow.sample(here.add(texel.mul(vec2(x, y)))).level(0))
-      return glow.mul(0.25)
+      // Green lies between red and blue as λ⁻⁴ does: their mean by geometry.
+      const green = glow.x.pow(1 - GREEN_SHARE).mul(glow.y.pow(GREEN_SHARE))
+      const cloud = vec3(glow.x, green, glow.y).div(glow.z.max(1e-3))
+      return vec4(cloud.mul(vec3(...CHANNEL_COLOR)), glow.w.mul(0.25))
     })()
   }
 
-  /** Mean of 1/(r² + s²) over the stem, for a place in clouds [1/m²]. */
-  #lineLight(place: Vec3): Float {
-    const sum = float(0).toVar() as Variable<Float>
+  /** Mean of 1/(r² + s²) over the stem, for a place in clouds, in w, and of that times the direction to the stem [1/m²]. */
+  #lineLight(place: Vec3): Vec4 {
+    const sum = vec4(0).toVar() as Variable<Vec4>
     loop('flashLine', STEM_POINTS - 1, index => {
       const [from, to] = [index, index.add(int(1))].map(
         i => this.#stemArray.element(i).xyz.sub(place).toConst() as Vec3
       )
-      sum.addAssign(meanInverseSquare(from, to, float(CLOUD_SOFTNESS)))
+      const light = meanInverseSquare(from, to, float(CLOUD_SOFTNESS))
+      sum.addAssign(vec4(from.add(to).normalize(), 1).mul(light))
     })
-    return sum.div(STEM_POINTS - 1)
+    return sum.div(STEM_POINTS - 1).toConst()
   }
 
   /** Light that the air on a ray scatters once, without direction, for `STORED_POWER` [cd/m²]: from three points of the stem. */
@@ -196,23 +239,22 @@ export class LightningPasses {
     return sum.mul(end).mul(STORED_POWER / (3 * 16 * Math.PI ** 2))
   }
 
-  /** Adds its light to a picture's colour. To be called inside of a shader function. */
-  addTo(color: Vec3): Vec3 {
+  /**
+   * Adds its light to a picture's colour. To be called inside of a shader function.
+   *
+   * @param transmittance - Part of the light from behind that passes the clouds.
+   */
+  addTo(color: Vec3, transmittance: Float): Vec3 {
     const here = uv() as unknown as Vec2
     const result = color.toVar() as Variable<Vec3>
     If(this.power.greaterThan(0), () => {
-      const { light } = this.#clouds.passes.accumulated
-      const opacity = light.sample(here).level(0).a.oneMinus()
-      const glow = this.#smooth.sample(here).level(0).toConst() as Vec4
-      const [r, g, b] = CHANNEL_COLOR
-      // Green lies between red and blue as λ⁻⁴ does: their mean by geometry, as a fraction of first order in their ratio.
-      const [more, less] = [1 + GREEN_SHARE, 1 - GREEN_SHARE]
-      const [x, y] = [glow.x, glow.y.max(1e-7)]
-      const green = x.mul(y.mul(more).add(x.mul(less))).div(y.mul(less).add(x.mul(more)))
-      const cloud = vec3(glow.x, green, glow.y).mul(opacity.div(glow.z.max(2.5e-4)))
-      const all = cloud.add(glow.w).mul(this.power.div(STORED_POWER))
-      result.addAssign(all.mul(vec3(r, g, b)))
-      result.addAssign(this.#bolt.sample(here))
+      // Where the marched pixels of this frame lie in their blocks.
+      const { size, block, jitter, marchedSize } = this.#clouds.passes.viewRays.frame
+      const marched = here.mul(size).sub(jitter.add(0.5)).div(block).add(0.5).div(marchedSize)
+      const glow = this.#smooth.sample(marched).level(0).toConst() as Vec4
+      const air = vec3(...CHANNEL_COLOR).mul(glow.w)
+      const light = glow.xyz.mul(transmittance.oneMinus()).add(air)
+      result.addAssign(light.mul(this.power.div(STORED_POWER)).add(this.#bolt.sample(here)))
     })
     return result
   }
@@ -240,7 +282,6 @@ export class LightningPasses {
     this.power.value = power.all
     const { passes } = this.#clouds
     const marched = passes.viewRays.frame.marchedSize.value
-    // Never a half: pixels between two marched ones would take either, by the backend.
     const [x, y] = [marched.x, marched.y].map(size => Math.floor(size / GLOW_PIXEL) + 1)
     this.#target.setSize(x, y)
     this.#smoothTarget.setSize(x, y)

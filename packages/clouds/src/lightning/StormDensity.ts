@@ -1,16 +1,15 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import type { Vector3 } from 'three'
-import { Fn, float, int, mix, texture, uniform, uv, vec2, vec3, vec4 } from 'three/tsl'
+import type { RenderTarget, Vector3 } from 'three'
+import { Fn, If, float, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudField } from '../density/CloudField'
-import { layerAt } from '../density/tsl/layer'
+import { forLayers, heightIn, isWithin, layerAt } from '../density/tsl/layer'
+import type { CloudSample } from '../density/tsl/sample'
 import { sampleLayer } from '../density/tsl/sampleLayer'
-import { subpointOffset, type CloudSample } from '../density/tsl/sample'
-import { weatherBackground } from '../density/tsl/weatherBackground'
+import { backgroundAt } from '../density/tsl/sampler'
 import {
   loop,
   type Float,
-  type Int,
   type LevelTexture,
   type Variable,
   type Vec2,
@@ -21,14 +20,21 @@ import { number, vector3 } from '../uniforms'
 import type { PlacedChannel, StormColumn } from './channel'
 
 /** Cells along the ground and upwards; slices lie in rows of tiles. */
-const SIZE = 64
+const SIZE = 96
 const SLICES = 32
 const TILES = [8, 4] as const
-/** Half width of the box [m]. */
+/**
+ * Half width of the box, and the distance from its middle at which cells are four times as wide as there [m]. Smaller: clouds farther away
+ * are lit by one factor (*Storm at night*); greater: coarse cells.
+ */
+const HALF_WIDTH = 30_000
+const FINE = 8000
+const SHRINK = 1 + FINE / HALF_WIDTH
+/** Length of ways out of the storm [m]. */
 export const REACH = 8000
-/** Samples of a path through it: fewer miss clouds between. */
-const SAMPLES = 8
-/** Samples of a path out of it, which is longer. */
+/** Samples of a path through the box: fewer miss clouds between. */
+const SAMPLES = 32
+/** Samples of a path out of it. */
 const SAMPLES_OUT = 24
 /** Directions in which light leaves, over which paths are averaged. */
 export const DIRECTIONS = 24
@@ -36,21 +42,34 @@ export const DIRECTIONS = 24
 export const OPEN = 4
 /** Greatest gain of thin sides. */
 const THINNEST = 3
+/** Scaled extinction below which there is no cloud [1/m]. */
+const CLEAR = 3e-4
+
+/** Depth passed on a way out of a cloud, as the light that comes out, over `OPEN`. */
+const passed = (depth: Float): Float => float(OPEN).div(depth.add(OPEN))
+
+const boxTarget = (name: string): RenderTarget =>
+  tableTarget(`Welkin.Lightning${name}`, SIZE * TILES[0], SIZE * TILES[1])
+
+const nodeOf = (target: RenderTarget): LevelTexture<Vec2> =>
+  texture(target.texture) as unknown as LevelTexture<Vec2>
 
 /**
- * Density of a storm around a flash, as a box of coarse cells, drawn once for each flash: how much of its light comes out on each side.
+ * Clouds around a flash, as a box of coarse cells, drawn once for each flash: how much of its light comes out on each side, and of that how much passes
+ * the clouds around.
  *
  * Light diffuses out where the path is short. With τ the depth from the channel to a place, ⟨⟩ the mean over directions, a place gets
- * (1/τ) / ⟨1/τ⟩ of what an even ball would send there: 1 for a channel in the middle of a ball, less behind other clouds. All light gets out.
+ * (1/τ) / ⟨1/τ⟩ of what an even ball would send there: 1 for a channel in the middle of a ball. All light gets out. Of what has got out, each further cloud
+ * of depth τ passes 1/(1 + τ/`OPEN`), as a slab does.
  */
 export class StormDensity {
-  readonly #target = tableTarget('Welkin.LightningDensity', SIZE * TILES[0], SIZE * TILES[1])
-  readonly #box = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
+  readonly #target = boxTarget('Density')
   readonly #openTarget = tableTarget('Welkin.LightningWaysOut', 1, 1)
-  readonly #open = texture(this.#openTarget.texture) as unknown as LevelTexture<Vec2>
-  readonly #pass: FragmentPass
-  readonly #openPass: FragmentPass
-  readonly #layer = uniform(0, 'int')
+  readonly #lightTarget = boxTarget('Light')
+  readonly #density = nodeOf(this.#target)
+  readonly #open = nodeOf(this.#openTarget)
+  readonly #light = nodeOf(this.#lightTarget)
+  readonly #passes: readonly (readonly [FragmentPass, RenderTarget])[]
   /** Place of the flash on the ground, from the camera, and east, north and up there, in the mapped space. */
   readonly #place = vector3()
   readonly #axes = [vector3(), vector3(), vector3()] as const
@@ -60,128 +79,162 @@ export class StormDensity {
   readonly #source = vector3()
 
   constructor(readonly field: CloudField) {
-    this.#pass = new FragmentPass('Welkin.LightningDensity', this.#draw())
-    this.#openPass = new FragmentPass(
-      'Welkin.LightningWaysOut',
-      Fn(() => {
-        const sum = float(0).toVar() as Variable<Float>
-        loop('wayOut', DIRECTIONS, index => {
-          // Even on a sphere: a Fibonacci lattice.
-          const z = float(index)
-            .add(0.5)
-            .mul(2 / DIRECTIONS)
-            .sub(1)
-            .toConst() as Float
-          const angle = float(index).mul(Math.PI * (3 - Math.sqrt(5)))
-          const aside = z.mul(z).oneMinus().sqrt()
-          const way = vec3(aside.mul(angle.cos()), aside.mul(angle.sin()), z)
-          const end = this.#source.add(way.mul(REACH)).toConst() as Vec3
-          // Finest near the source: most of the depth is there.
-          const depth = this.#depthTo(end, SAMPLES_OUT, even => {
-            return { part: even.mul(even), slope: even.mul(2) }
-          })
-          sum.addAssign(depth.add(OPEN).reciprocal())
-        })
-        return vec4(float(DIRECTIONS).div(sum).min(6e4), 0, 0, 1)
-      })()
-    )
+    this.#passes = [
+      [new FragmentPass('Welkin.LightningDensity', this.#draw()), this.#target],
+      [new FragmentPass('Welkin.LightningWaysOut', this.#waysOut()), this.#openTarget],
+      [new FragmentPass('Welkin.LightningLight', this.#lit()), this.#lightTarget]
+    ]
+  }
+
+  /** Place of a texel of the box, in the flash's frame [m]. To be called inside of a shader function. */
+  #cell(): Vec3 {
+    const at = (uv() as unknown as Vec2).mul(vec2(...TILES)).toConst() as Vec2
+    const tile = at.floor().toConst() as Vec2
+    const flat = at
+      .sub(tile)
+      .sub(0.5)
+      .mul(2 / SHRINK)
+      .toConst() as Vec2
+    const slice = tile.y.mul(TILES[0]).add(tile.x).add(0.5).div(SLICES)
+    const up = this.#base.add(this.#thickness.mul(slice))
+    return vec3(flat.mul(FINE).div(flat.abs().oneMinus()), up).toConst()
   }
 
   /** Scaled extinction of a cell [1/km]. */
   #draw(): Vec4 {
     const { field } = this
     return Fn(() => {
-      const at = (uv() as unknown as Vec2).mul(vec2(...TILES)).toConst() as Vec2
-      const tile = at.floor().toConst() as Vec2
-      const flat = at
-        .sub(tile)
-        .sub(0.5)
-        .mul(2 * REACH)
-        .toConst() as Vec2
-      const slice = tile.y.mul(TILES[0]).add(tile.x).add(0.5).div(SLICES)
-      const up = this.#base.add(this.#thickness.mul(slice))
+      const cell = this.#cell()
       const [east, north, zenith] = this.#axes
       const offset = this.#place
-        .add(east.mul(flat.x))
-        .add(north.mul(flat.y))
-        .add(zenith.mul(up))
+        .add(east.mul(cell.x))
+        .add(north.mul(cell.y))
+        .add(zenith.mul(cell.z))
         .toConst() as Vec3
       const distance = offset.length().toConst() as Float
       const sample: CloudSample = { offset, ...field.view.localCoordinates(offset), distance }
-      const layer = layerAt(field, int(this.#layer as unknown as Int).toConst())
-      const footprint = distance.mul(field.pixelAngle).toConst() as Float
-      const subpoint = subpointOffset(field, sample).toConst()
-      const background = weatherBackground(field, layer, subpoint, sample, footprint)
-      const { extinction } = sampleLayer(field, layer, background, sample, { detail: false })
-      return vec4(extinction.mul(field.depthScale).mul(1000), 0, 0, 1)
+      const sum = float(0).toVar() as Variable<Float>
+      forLayers(field, index => {
+        const layer = layerAt(field, index)
+        If(isWithin(layer, heightIn(layer, sample.altitude)), () => {
+          const background = backgroundAt(field, layer, sample)
+          const { extinction } = sampleLayer(field, layer, background, sample, { detail: false })
+          sum.addAssign(extinction)
+        })
+      })
+      return vec4(sum.mul(field.depthScale).mul(1000), 0, 0, 1)
     })()
   }
 
-  /** Scaled extinction at a place in the flash's frame [1/m]. */
-  #densityAt(place: Vec3): Float {
-    const flat = place.xy
-      .div(2 * REACH)
+  /** Harmonic mean of the depths out of the storm, and `OPEN`. */
+  #waysOut(): Vec4 {
+    return Fn(() => {
+      const sum = float(0).toVar() as Variable<Float>
+      loop('wayOut', DIRECTIONS, index => {
+        // Even on a sphere: a Fibonacci lattice.
+        const z = float(index)
+          .add(0.5)
+          .mul(2 / DIRECTIONS)
+          .sub(1)
+          .toConst() as Float
+        const angle = float(index).mul(Math.PI * (3 - Math.sqrt(5)))
+        const aside = z.mul(z).oneMinus().sqrt()
+        const way = vec3(aside.mul(angle.cos()), aside.mul(angle.sin()), z).mul(REACH).toConst()
+        const depth = float(0).toVar() as Variable<Float>
+        loop('wayStep', SAMPLES_OUT, step => {
+          // Finest near the source: most of the depth is there.
+          const even = float(step).add(0.5).div(SAMPLES_OUT).toConst() as Float
+          const place = this.#source.add(way.mul(even.mul(even))).toConst() as Vec3
+          depth.addAssign(this.#densityAt(place).mul(even))
+        })
+        sum.addAssign(passed(depth.mul((2 * REACH) / SAMPLES_OUT)))
+      })
+      return vec4(
+        float(DIRECTIONS * OPEN)
+          .div(sum)
+          .min(6e4),
+        0,
+        0,
+        1
+      )
+    })()
+  }
+
+  /** Light that arrives at a cell, over what an even ball would send there, and 1 if its cloud is another than the flash's. */
+  #lit(): Vec4 {
+    return Fn(() => {
+      const way = this.#cell().sub(this.#source).toConst() as Vec3
+      const length = way
+        .length()
+        .mul(6 / SAMPLES)
+        .toConst() as Float
+      const open = this.#open.sample(vec2(0.5)).level(0).x.div(OPEN).toConst()
+      /** Depth of the present cloud; light that got out of those before it, if there are any. */
+      const depth = float(0).toVar() as Variable<Float>
+      const out = float(0).toVar() as Variable<Float>
+      const outOf = (): Float =>
+        out.greaterThan(0).select(out, open).mul(passed(depth)).min(THINNEST).toConst()
+      loop('lightStep', SAMPLES, index => {
+        // Finest at both ends: what is before the place makes its form.
+        const even = float(index).add(0.5).div(SAMPLES).toConst() as Float
+        const part = even.mul(even).mul(even.mul(-2).add(3))
+        const density = this.#densityAt(this.#source.add(way.mul(part)).toConst()).toConst()
+        If(density.lessThan(CLEAR), () => {
+          out.assign(outOf())
+          depth.assign(0)
+        }).Else(() => {
+          depth.addAssign(density.mul(even).mul(even.oneMinus()).mul(length))
+        })
+      })
+      return vec4(outOf(), out.greaterThan(0).select(1, 0), 0, 1)
+    })()
+  }
+
+  /** Value of a box at a place in the flash's frame; out of it, that at its edge. */
+  #read(box: LevelTexture<Vec2>, place: Vec3): Vec2 {
+    const { x, y } = place
+    const warped = vec2(x.div(x.abs().add(FINE)), y.div(y.abs().add(FINE)))
+    const flat = warped
+      .mul(SHRINK / 2)
       .add(0.5)
+      .clamp(0.5 / SIZE, 1 - 0.5 / SIZE)
       .toConst() as Vec2
-    const up = place.z.sub(this.#base).div(this.#thickness).toConst() as Float
-    const isInside = up.clamp(0, 1).equal(up).and(flat.clamp(0, 1).equal(flat).all())
-    const slice = up
+    const slice = this.#heightOf(place)
       .mul(SLICES)
       .sub(0.5)
       .clamp(0, SLICES - 1)
       .toConst() as Float
     const first = slice.floor().toConst() as Float
-    const inTile = flat.clamp(0.5 / SIZE, 1 - 0.5 / SIZE).toConst() as Vec2
-    const read = (index: Float): Float => {
+    const [below, above] = [first, first.add(1).min(SLICES - 1)].map(index => {
       const row = index.div(TILES[0]).floor().toConst() as Float
       const tile = vec2(index.sub(row.mul(TILES[0])), row)
-      return this.#box
-        .sample(
-          tile
-            .add(inTile)
-            .div(vec2(...TILES))
-            .toConst()
-        )
-        .level(0).x
-    }
-    const both = mix(read(first), read(first.add(1).min(SLICES - 1)), slice.sub(first))
-    return isInside.select(both.div(1000), 0)
-  }
-
-  /**
-   * Scaled depth from the source to a place in the flash's frame.
-   *
-   * @param partAt - Part of the path at an evenly spaced number in [0, 1), and its slope: where samples are dense.
-   */
-  #depthTo(
-    place: Vec3,
-    samples: number,
-    partAt: (even: Float) => { part: Float; slope: Float | number }
-  ): Float {
-    const way = place.sub(this.#source).toConst() as Vec3
-    const sum = float(0).toVar() as Variable<Float>
-    loop('wayStep', samples, index => {
-      const { part, slope } = partAt(float(index).add(0.5).div(samples).toConst())
-      sum.addAssign(this.#densityAt(this.#source.add(way.mul(part)).toConst()).mul(slope))
+      const at = tile.add(flat).div(vec2(...TILES))
+      return box.sample(at.toConst()).level(0).xy
     })
-    return sum.mul(way.length()).div(samples)
+    return mix(below, above, slice.sub(first)).toConst()
+  }
+
+  /** Height in the storm, from 0 at its base to 1 at its top. */
+  #heightOf(place: Vec3): Float {
+    return place.z.sub(this.#base).div(this.#thickness).toConst()
+  }
+
+  /** Scaled extinction at a place in the flash's frame [1/m]. */
+  #densityAt(place: Vec3): Float {
+    const up = this.#heightOf(place)
+    return up.clamp(0, 1).equal(up).select(this.#read(this.#density, place).x.div(1000), 0)
   }
 
   /**
-   * Light that comes out at a place, over what an even ball would send there. To be called inside of a shader function.
+   * Light that comes out at a place, over what an even ball would send there, and 1 if it comes from out of another cloud, else 0. To be called inside of
+   * a shader function.
    *
    * @param offset - Displacement from the camera, in the mapped space [m].
    */
-  lightOut(offset: Vec3): Float {
+  lightOut(offset: Vec3): Vec2 {
     const shifted = offset.sub(this.#place).toConst() as Vec3
     const [east, north, up] = this.#axes.map(axis => shifted.dot(axis))
-    // Finest near the place: what is before it there makes its form.
-    const depth = this.#depthTo(vec3(east, north, up).toConst(), SAMPLES, even => {
-      const left = even.oneMinus().toConst() as Float
-      return { part: left.mul(left).oneMinus(), slope: left.mul(2) }
-    })
-    const open = this.#open.sample(vec2(0.5)).level(0).x
-    return open.div(depth.add(OPEN)).min(THINNEST)
+    return this.#read(this.#light, vec3(east, north, up).toConst())
   }
 
   /** Follows the camera. @param offset - The flash's place from the camera, in the mapped space [m]. */
@@ -194,25 +247,21 @@ export class StormDensity {
     renderer: Renderer,
     offset: Vector3,
     { axes, stem }: PlacedChannel,
-    { base, top }: StormColumn,
-    layer: number
+    { base, top }: StormColumn
   ): void {
     this.update(offset)
     axes.forEach((axis, i) => this.#axes[i].value.copy(axis))
     this.#base.value = base
     this.#thickness.value = top - base
-    this.#layer.value = layer
     // Where most of it is in the cloud.
     const inside = stem.filter(([, , z]) => z > base)
     const middle = inside[Math.floor(inside.length / 2)] ?? stem[0]
     this.#source.value.set(...(middle as [number, number, number]))
-    this.#pass.render(renderer, this.#target)
-    this.#openPass.render(renderer, this.#openTarget)
+    for (const [pass, target] of this.#passes) pass.render(renderer, target)
   }
 
   /** Frees its textures. */
   dispose(): void {
-    for (const owned of [this.#target, this.#openTarget, this.#pass, this.#openPass])
-      owned.dispose()
+    for (const owned of this.#passes.flat()) owned.dispose()
   }
 }

@@ -100,18 +100,21 @@ function shadePixels(
     color.assign(vec4(0, 0, 0, 1))
     const { code, steps } = unpackFound(ray.w)
     distances.assign(vec4(ray.xy, code, steps))
-    If(ray.z.lessThan(1), () => {
+    If(ofClouds.z.lessThan(1), () => {
       const { direction, directionView } = viewRayAt(viewRays, at)
       const points = {
         distances: marched.distances.sample(here).level(0).toConst() as Vec4,
         shares: found.shares,
         lit: cast.litOn(found, direction, noise)
       }
-      const clouds = shadePoints(scene, direction, points)
-      const radiance = fallen ? clouds.mul(fallen.before).add(fallen.radiance) : clouds
-      const seen = { radiance, transmittance: ray.z, distance: ray.x.exp2() }
+      const radiance = shadePoints(scene, direction, points)
+      const seen = { radiance, transmittance: ofClouds.z, distance: ofClouds.x.exp2() }
       color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
     })
+    if (fallen) {
+      const { before, light } = fallen
+      color.assign(vec4(color.rgb.mul(before).add(light.mul(viewRays.frame.gain)), ray.z))
+    }
   })
 }
 

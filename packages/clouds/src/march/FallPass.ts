@@ -8,7 +8,7 @@ import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { encodeDistance } from '../temporal/tsl/packing'
 import type { Float, LevelTexture, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
-import { fallBlockOf } from './FrameUniforms'
+import { withAerialPerspective } from './tsl/aerialPerspective'
 import type { FallOnRays, LitRays } from './tsl/fallOnRays'
 import type { MarchedTargets } from './tsl/marchedPixel'
 import { viewRayAt, type FrameInputs } from './tsl/viewRay'
@@ -20,13 +20,23 @@ export interface FallScene extends ShadingContext {
 
 /** Precipitation before and behind the clouds of a pixel, and the ray of both. */
 export interface FallOnPixel {
-  /** Spectral radiance for unit irradiance of the bare sun [1/sr]. */
-  readonly radiance: Vec4
+  /** Light of what falls, with the air before it, as `withAerialPerspective` has it at a gain of 1. */
+  readonly light: Vec3
   /** Share of the clouds' light that passes what falls before them. */
   readonly before: Float
   /** `MarchedTargets.ray` of clouds and of what falls. */
   readonly ray: Vec4
 }
+
+/**
+ * Marched pixels of a frame from which on four of them share a ray: as many rays as a picture of 1920 × 1080 has at medium quality.
+ * Fewer: tails of virga are lost in a grid in small pictures (*Virga*); more: they cost more than large ones.
+ */
+export const sharing = { from: 33_000 }
+
+/** Marched pixels along an edge of those that share a ray: all have their own where all pixels are marched, or few. */
+export const fallBlockOf = (block: number, pixels: number): number =>
+  block > 1 && pixels >= sharing.from ? 2 : 1
 
 /** Factor of a share in [0, 1] that is packed as the fraction of a whole number, and of `packFound`'s numbers, which have 11 bits. */
 const BEHIND = 0.5
@@ -78,7 +88,8 @@ export class FallPass {
 
   /** @param block - Edge of the blocks of which a frame marches one pixel each. */
   setSize(width: number, height: number, block: number): void {
-    const shared = fallBlockOf(block)
+    const shared = fallBlockOf(block, width * height)
+    this.#frame.fallBlock.value = shared
     this.#target.setSize(Math.ceil(width / shared), Math.ceil(height / shared))
     this.#spreadTarget.setSize(width, height)
   }
@@ -103,7 +114,7 @@ export class FallPass {
     const [light, ray] = this.#spread.map(each => each.sample(here).level(0).toConst() as Vec4)
     const found = ray.w.floor().toConst() as Float
     return {
-      radiance: falls.select(light.div(this.#frame.nightGain), vec4(0)).toConst(),
+      light: falls.select(light.xyz.div(this.#frame.nightGain), vec3(0)).toConst(),
       before: falls.select(ray.w.sub(found).div(BEHIND), 1).toConst(),
       ray: falls.select(vec4(ray.xyz, found.div(FOUND)), clouds).toConst()
     }
@@ -142,16 +153,21 @@ function draw(
     const own = texel.mul(fallBlock).add(fallPixel).min(marchedSize.sub(1)).toConst() as Vec2
     const here = own.add(0.5).div(marchedSize).toConst() as Vec2
     const pixel = own.mul(block).add(jitter).min(size.sub(1))
-    const { direction } = viewRayAt(scene.viewRays, pixel.add(0.5).div(size).toConst())
+    const { direction, directionView } = viewRayAt(
+      scene.viewRays,
+      pixel.add(0.5).div(size).toConst()
+    )
     const { ray, litFall } = cast.rayAt(here)
     const distances = marched.distances.sample(here).level(0).toConst() as Vec4
     const noise = interleavedNoise(texel, noiseShift)
     const looked = { direction, jitter: noise, marched: ray, litFall }
     const seen = precipitation.among(scene, looked, distances)
     // Moonlit rain is a millionth of sunlit rain: too faint for half floats.
-    radiance.assign(seen.radiance.mul(nightGain))
-    const [middle, half, end] = [seen.distance, seen.half, seen.end].map(encodeDistance)
-    fallen.assign(vec4(seen.opacity, middle, half, end))
+    const { opacity, distance } = seen
+    const bare = { radiance: seen.radiance, transmittance: opacity.oneMinus(), distance }
+    radiance.assign(withAerialPerspective(scene.field.view, bare, directionView, nightGain))
+    const [middle, half, end] = [distance, seen.half, seen.end].map(encodeDistance)
+    fallen.assign(vec4(opacity, middle, half, end))
   })
 }
 

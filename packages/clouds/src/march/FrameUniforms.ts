@@ -18,7 +18,7 @@ const ORDERS: Readonly<Record<number, readonly number[]>> = {
 }
 
 /** Step of the additive recurrence whose consecutive numbers lie farthest apart in the mean. */
-const GOLDEN_RATIO = (Math.sqrt(5) - 1) / 2
+export const GOLDEN_RATIO = (Math.sqrt(5) - 1) / 2
 
 /**
  * History's length while the view or the clouds move [frames], and at least [samples of a pixel]. Longer:
@@ -104,9 +104,6 @@ const cloudForms = ({ values }: CloudField): number[] =>
   values.flatMap((vector, i) =>
     i % LAYER_STRIDE < FORM_SLOTS ? formOf(vector, i % LAYER_STRIDE) : []
   )
-
-/** Marched pixels along an edge of those that share a ray through what falls: all have their own where all pixels are marched. */
-export const fallBlockOf = (block: number): number => (block === 1 ? 1 : 2)
 
 const _projection = new Matrix4()
 const _toPrevious = new Matrix4()
@@ -249,7 +246,6 @@ export class FrameUniforms {
     const index = order[this.#count % order.length]
     this.jitter.value.set(index % block, Math.floor(index / block))
     this.block.value = block
-    this.fallBlock.value = fallBlockOf(block)
     // Low-discrepancy in a pixel's samples, which are whole rounds apart, and over the pixels of a block.
     const round = Math.floor(this.#count / order.length)
     const shift = round * GOLDEN_RATIO + index / order.length

@@ -32,6 +32,11 @@ export const fallForm = {
   streakHeight: 0.3,
   /** Blur of streaks over the distance by which they lag, and over the depth of fall [–]: drops differ in speed. 0: lines to the ground. */
   lagBlur: 0.03,
+  /**
+   * Spread of the distances by which drops of one column lag, over their mean, to either side: they fall at 5 to 8 m/s (Gunn & Kinzer 1949), flakes at 0.9
+   * to 1.5 m/s (Locatelli & Hobbs 1974). 0: veils with edges like cut paper far away (*Snow shower*).
+   */
+  lagSpread: 0.25,
   fallBlur: 0.01
 } as const
 

@@ -25,8 +25,12 @@ describe('precipitation of a layer', () => {
       "CloudLayer.precipitation: unknown option 'rte', did you mean 'rate'?"
     )
     expect(layer.precipitation?.rate).toBe(3)
+    layer.precipitation = { rate: 4 }
+    expect(layer.precipitation).toMatchObject({ rate: 4, virgaDepth: 800 })
     layer.precipitation = null
     expect(layer.precipitation).toBe(null)
+    layer.precipitation = { rate: 4 }
+    expect(layer.precipitation).toMatchObject({ rate: 4, virgaDepth: 0 })
   })
 
   test('comes with the presets that have any, and needs drops that are some', () => {
@@ -36,6 +40,12 @@ describe('precipitation of a layer', () => {
     expect(rain('overcast')).toBe(undefined)
     const [storm] = cloudPreset('hailstorm')
     expect(storm.parameters).toMatchObject({ anvil: 1, precipitation: { rate: 30, hail: 0.4 } })
+    const dry = cloudPreset('cumulonimbus')
+    const bare = [vec4(0), float(0), new PerspectiveCamera(), new Atmosphere()] as const
+    clouds(...bare, dry).dispose()
+    dry.at(0).precipitation = { rate: 30 }
+    expect(dry.at(0).parameters).toEqual(storm.parameters)
+    expect(() => clouds(...bare, dry)).toThrow('precipitation must be given')
     expect(() => precipitationShafts({ drops: {} as never })).toThrow(
       'PrecipitationShafts: drops must be a ScatteringPhase or null'
     )

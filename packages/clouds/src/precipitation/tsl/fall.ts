@@ -96,6 +96,8 @@ interface FallPlace {
   /** Depth of fall, and width of what the sample stands for [m]. */
   readonly depth: Float
   readonly footprint: Float
+  /** Place among drops and flakes by their speeds, in [−½, ½); undefined for the mean. */
+  readonly speed: Float | undefined
 }
 
 /**
@@ -104,7 +106,7 @@ interface FallPlace {
  */
 function fallAlong(
   lag: Vec2,
-  { field, map, layer, nodes, sample, depth, footprint }: FallPlace
+  { field, map, layer, nodes, sample, depth, footprint, speed }: FallPlace
 ): { rate: Variable<Float>; rank: Variable<Float> } {
   const rate = float(0).toVar() as Variable<Float>
   const rank = float(0).toVar() as Variable<Float>
@@ -113,7 +115,10 @@ function fallAlong(
   const aside = nodes.windAxis.mul(lag.x).add(nodes.shearAxis.mul(lag.y))
   const drift = aside.cross(up).toConst() as Vec3
   const offset = sample.offset.add(drift).toConst() as Vec3
-  const above: CloudSample = { offset, altitude, up, distance }
+  // Streaks stay sharp: drops that have left a cloudlet together are of one size where they arrive together.
+  const more = speed?.mul(2 * fallForm.lagSpread).mul(lag.x)
+  const from = more ? offset.add(nodes.windAxis.mul(more).cross(up)).toConst() : offset
+  const above: CloudSample = { offset: from, altitude, up, distance }
   const subpoint = subpointOffset(field, above).toConst() as Vec3
   const column =
     map?.fallAt(layer.index, subpoint) ??
@@ -142,13 +147,16 @@ const hailShare = (rank: Float): Float => smoothstep(...fallForm.hailFrom, rank)
  * Precipitation of a layer at a place. To be called inside of a shader function.
  *
  * Stones fall faster than drops, and so nearer to where they come from: shafts of hail are steeper than the rain about them.
+ *
+ * @param speed - Place among drops and flakes by their speeds, in [−½, ½); left out, that of the mean.
  */
 export function fallenFrom(
   field: CloudField,
   map: WeatherMap | undefined,
   layer: LayerNodes,
   nodes: FallNodes,
-  sample: CloudSample
+  sample: CloudSample,
+  speed?: Float
 ): Fallen {
   const rate = float(0).toVar() as Variable<Float>
   const hail = float(0).toVar() as Variable<Float>
@@ -157,7 +165,7 @@ export function fallenFrom(
   If(nodes.rate.greaterThan(0).and(altitude.lessThan(nodes.ceiling)), () => {
     const depth = layer.baseAltitude.sub(altitude).max(0).toConst() as Float
     const footprint = distance.mul(field.pixelAngle).toConst() as Float
-    const place: FallPlace = { field, map, layer, nodes, sample, depth, footprint }
+    const place: FallPlace = { field, map, layer, nodes, sample, depth, footprint, speed }
     const lag = fallLag(altitude, layer.baseAltitude, nodes.freezingLevel).toConst() as Vec2
     const lagOfHail = vec2(depth.mul(depth).div(fallForm.hailSpeed), depth).toConst() as Vec2
     // One copy of the code for both: with two, WebGL compiles three times as long.

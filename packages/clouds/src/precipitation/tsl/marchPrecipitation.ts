@@ -15,6 +15,7 @@ import {
   type Vec4
 } from '../../tsl-types'
 import { DIFFRACTED } from '../fallForm'
+import { GOLDEN_RATIO } from '../../march/FrameUniforms'
 import { fallenFrom } from './fall'
 import type { FallNodes } from './fallColumn'
 import { fallExtinctions } from './fallExtinctions'
@@ -150,8 +151,11 @@ export function marchPrecipitation(
       /** Extinction, the same of flakes and stones, and of ranks. */
       const found = vec3(0).toVar() as Variable<Vec3>
       const near = float(-1).toVar() as Variable<Float>
+      // A place of the drops' speeds for each step, each as often.
+      const speed = float(index).mul(GOLDEN_RATIO).add(jitter).fract().sub(0.5) as Float
       const visit = (layer: Int): void => {
-        const fallen = fallenFrom(field, weatherMap, layerAt(field, layer), fallOf(layer), sample)
+        const falls = fallOf(layer)
+        const fallen = fallenFrom(field, weatherMap, layerAt(field, layer), falls, sample, speed)
         near.assign(near.max(fallen.rank))
         If(fallen.rank.greaterThan(0), () => {
           const extinctions = fallExtinctions(fallen.rate, fallen.snow, fallen.hail).toConst()
