@@ -76,7 +76,7 @@ const SUNLIGHT = -3
 const TWILIGHT = -20
 
 /** Brighter pictures while snow lies, or it is grey [stops]. */
-const SNOW_COMPENSATION = 0.6
+const SNOW_COMPENSATION = 0.25
 
 /** Brighter pictures of nights, or what the moon lights is black [stops], and elevation of the sun by which they are [degrees]. */
 const NIGHT_COMPENSATION = 1.3

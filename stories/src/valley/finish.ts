@@ -184,10 +184,12 @@ export class ValleyFinish {
       const pixels = way.mul(screenSize).length().toConst()
       const count = int(pixels.mul(0.5).add(FEWEST_SAMPLES).min(MOST_SAMPLES)).toConst()
       const samples = float(count)
-      const light = (sharp.sample(uv()) as Node<'vec4'>).toVar()
+      const light = vec4(0).toVar()
       If(pixels.greaterThan(MOVING), () => {
         // Three divides the sum of one more.
         light.assign(motionBlur(sharp, way, count).mul(samples.div(samples.add(1))))
+      }).Else(() => {
+        light.assign(sharp.sample(uv()).level(float(0)))
       })
       return light
     })()

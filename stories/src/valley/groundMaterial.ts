@@ -23,6 +23,7 @@ import {
 import type { Texture } from 'three'
 import type { Node } from 'three/webgpu'
 import { createNoiseTexture } from '../globe/detailNoise'
+import { PatchMap } from './PatchMap'
 import { VILLAGE } from './places'
 import type { Relief } from './relief'
 import { VertexLitMaterial } from './VertexLitMaterial'
@@ -117,7 +118,10 @@ const CRACKS = [
 const LAYERED = 1.7
 
 /** Pixels over which rock is blurred: its bumps are differences between pixels, of which sharp ones would be pepper. */
-const BLURRED = 2
+const BLURRED = 1.5
+
+/** Anisotropy of rock. Less: walls seen from aside are smeared down their slopes. */
+const ROCK_ANISOTROPY = 4
 
 /** Widths over which noise of crowns, and of clumps of grass elsewhere, repeats [m]; share of woods from which ground is theirs. */
 const CROWNED = 43
@@ -193,6 +197,18 @@ function cracksIn(
   return sum
 }
 
+/** Periods of the noise that tells broad parts of the land apart, and of that of patches [m]. */
+const BROAD = [1310, 4170] as const
+const PATCHES = 390
+
+/** Coarse noise of the land, by a place [m]: of its broad parts, and of patches. */
+export const coarseNoise =
+  (noise: (at: Node<'vec2'>) => Node<'float'>) =>
+  (place: Node<'vec3'>): Node<'vec2'> => {
+    const [first, second, patches] = [...BROAD, PATCHES].map(each => noise(turned(place, each)))
+    return vec2(first.add(second), patches)
+  }
+
 /** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
 export function groundMaterial(
   { wetnessNode, snowCoverNode }: SurfaceWater,
@@ -203,22 +219,24 @@ export function groundMaterial(
   const place = positionWorld.xz
   const picture = createNoiseTexture()
   // Each of its many scales is blurred far away: there are coarser ones. The finest are seen along the ground.
-  const grazed = picture.clone()
+  const [grazed, stone] = [picture.clone(), picture.clone()]
   picture.anisotropy = 1
   grazed.anisotropy = 2
-  for (const each of [picture, grazed]) {
-    material.addEventListener('dispose', () => each.dispose())
-  }
+  stone.anisotropy = ROCK_ANISOTROPY
   // The coarsest of its five octaves has 8 cells a period. Seen from above: with heights in it, slopes that go with them have
   // streaks.
   const turnedBy = (period: number): Node<'vec2'> => turned(positionWorld, period)
   const noiseAt = (at: Node<'vec2'>): Node<'float'> => texture(picture, at).r.sub(0.5).mul(2)
-  const noise = (period: number): Node<'float'> => noiseAt(turnedBy(period))
+  const patchMap = new PatchMap(coarseNoise(noiseAt))
+  for (const each of [picture, grazed, stone, patchMap]) {
+    material.addEventListener('dispose', () => each.dispose())
+  }
   // A period that is a few pixels wide would show as a net.
   const distance = positionView.z.negate()
   const upTo = (metres: number): Node<'float'> => smoothstep(metres, metres / 4, distance)
-  const broad = noise(1310).add(noise(4170)).mul(0.8).toVar()
-  const patches = noise(390).mul(upTo(24_000)).toVar()
+  const coarse = patchMap.sample().toConst()
+  const broad = coarse.x.mul(0.8).toVar()
+  const patches = coarse.y.mul(upTo(24_000)).toVar()
   const near = turnedBy(1.9).toVar()
   const [across, along] = [dFdx(near).toVar(), dFdy(near).toVar()]
   // Its cells are seen near by: bent, they are no squares.
@@ -258,7 +276,7 @@ export function groundMaterial(
     If(rocky.greaterThan(0), () => {
       // Where walls turn, noise parts one from the other.
       const isEastern = broadNormal.x.abs().sub(broadNormal.z.abs()).greaterThan(fine.mul(0.25))
-      found.assign(cracksIn(grazed, isEastern, footprint).mul(rocky))
+      found.assign(cracksIn(stone, isEastern, footprint).mul(rocky))
     })
     return found
   })().toVar()

@@ -188,7 +188,7 @@ export function setFoliage(material: NodeMaterial, fallen: Node<'float'> | null 
   material.normalNode = normalViewGeometry
   if (fallen === null) {
     material.maskNode = hasLeaf.or(isSolid)
-    material.colorNode = isSolid.select(vec3(1), leaf.r.mul(1.25).add(0.22))
+    material.colorNode = isSolid.select(1, leaf.r.mul(1.25).add(0.22)) as Node<'float'>
     return
   }
   // Leaves fall one by one. Twigs are finer than pixels from near by.
