@@ -66,6 +66,9 @@ const SHAFTS: Readonly<Record<CloudQualityName, LightShaftsQuality>> = {
   ultra: 'high'
 }
 
+/** Cover of the deck over which the sun is hidden: light shafts are faint, and may be coarse. */
+const HIDING = 0.7
+
 /** Elevation of the sun over which moon and night sky light nothing that one sees [degrees]. */
 const NIGHT_LIGHTS = 4
 
@@ -83,7 +86,7 @@ const NIGHT_COMPENSATION = 1.3
 const NIGHT = -10
 
 /** Turn of the sun after which the sky that the lake mirrors beside the picture is drawn anew [degrees]. */
-const MIRRORED_TURN = 0.6
+const MIRRORED_TURN = 1
 
 /** Altitude of the lake's water [m]. */
 const ALTITUDE = 600
@@ -219,7 +222,6 @@ export class Valley {
     if (date !== before.date) this.#setDay(this.cycle.hour)
     if (hour !== before.hour) this.cycle.hour = hour
     const fineness = typeof quality === 'string' ? quality : 'low'
-    this.#shafts.quality = SHAFTS[fineness]
     this.#land.setQuality(fineness)
     this.#land.showTrees(trees)
     applyFactors(this.#state, this.#style, this.#targets)
@@ -249,8 +251,10 @@ export class Valley {
   }
 
   #applyWeather(atOnce = false): void {
-    const { turbidity } = this.#weather.current
+    const { turbidity, deck } = this.#weather.current
     const { clouds, cloudShadows, precipitation, quality } = this.#state
+    const fineness = typeof quality === 'string' ? quality : 'low'
+    this.#shafts.quality = clouds && deck > HIDING ? 'low' : SHAFTS[fineness]
     this.#node.quality = this.#weather.qualityOf(quality, this.#state.mist)
     this.#falling.set(this.#falls(), atOnce)
     this.#weather.apply(this.#layers, clouds, this.#state.mist, cloudShadows, precipitation)

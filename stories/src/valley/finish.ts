@@ -4,7 +4,6 @@ import type { PerspectiveCamera } from 'three'
 import { bloom } from 'three/addons/tsl/display/BloomNode.js'
 import { dof } from 'three/addons/tsl/display/DepthOfFieldNode.js'
 import { fxaa } from 'three/addons/tsl/display/FXAANode.js'
-import { motionBlur } from 'three/addons/tsl/display/MotionBlur.js'
 import { smaa } from 'three/addons/tsl/display/SMAANode.js'
 import { taau } from 'three/addons/tsl/display/TAAUNode.js'
 import { traa } from 'three/addons/tsl/display/TRAANode.js'
@@ -14,6 +13,7 @@ import {
   Fn,
   If,
   int,
+  Loop,
   mrt,
   output,
   rtt,
@@ -56,11 +56,7 @@ const GLOW = 0.02
 /** Pixels along a side of motion blur's velocities over those of the picture. */
 const COARSE = 0.25
 
-/** Motion from which a picture is blurred [pixels]. */
-const MOVING = 0.7
-
-/** Samples of motion blur where little moves, and where much does: one for two pixels in between. */
-const FEWEST_SAMPLES = 2
+/** Samples of motion blur where much moves: elsewhere there is one for two pixels. */
 const MOST_SAMPLES = 12
 
 /** Pixels along a side of the pictures that are added up to a larger one (TAAU), over those of that. */
@@ -181,15 +177,19 @@ export class ValleyFinish {
   #blurred(sharp: PictureNode, motion: Node): Node {
     return Fn(() => {
       const way = (motion as Node<'vec4'>).xy.mul(vec2(0.5, -0.5)).toConst()
-      const pixels = way.mul(screenSize).length().toConst()
-      const count = int(pixels.mul(0.5).add(FEWEST_SAMPLES).min(MOST_SAMPLES)).toConst()
-      const samples = float(count)
+      const pixels = way.mul(screenSize).length()
+      const count = int(pixels.mul(0.5).add(1.5).min(MOST_SAMPLES)).toConst()
+      const at = (place: Node<'vec2'>): Node<'vec4'> =>
+        sharp.sample(place).level(float(0)) as unknown as Node<'vec4'>
       const light = vec4(0).toVar()
-      If(pixels.greaterThan(MOVING), () => {
-        // Three divides the sum of one more.
-        light.assign(motionBlur(sharp, way, count).mul(samples.div(samples.add(1))))
+      If(count.greaterThan(1), () => {
+        Loop(count as unknown as number, ({ i }: { i: Node<'int'> }) => {
+          const moment = float(i).add(0.5).div(float(count)).sub(0.5)
+          light.addAssign(at(uv().add(way.mul(moment))))
+        })
+        light.divAssign(float(count))
       }).Else(() => {
-        light.assign(sharp.sample(uv()).level(float(0)))
+        light.assign(at(uv()))
       })
       return light
     })()

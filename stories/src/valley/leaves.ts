@@ -32,8 +32,8 @@ const LEAVES = 90
 const SIDE_TWIGS = 32
 
 /** Branches of a spray without leaves, and twigs of each. */
-const BRANCHES = 9
-const TWIGS = 12
+const BRANCHES = 5
+const TWIGS = 5
 
 /** Coverage of leaves from which a place is solid, near and far: far away pictures are means, of which gaps take most. */
 const SOLID = [0.5, 0.34] as const
@@ -47,7 +47,7 @@ const TWIG_COLOR = [1.25, 0.66, 1.9] as const
 
 /** Coverage of twigs from which a place is solid near by, and the range of such limits far away. */
 const TWIG_EDGE = 0.3
-const TWIG_NOISE = [0.03, 0.6] as const
+const TWIG_NOISE = [0.03, 0.5] as const
 
 /** Part of a bare crown of the distance that one looks through. */
 const BARE = 0.55
@@ -104,7 +104,7 @@ function bareTwigs(bytes: Bytes, random: () => number): void {
   for (let i = 0; i < BRANCHES; i++) {
     const angle = (2 * Math.PI * (i + 0.7 * random())) / BRANCHES
     const reach = 0.36 + 0.13 * random()
-    line(0.5, 0.5, angle, reach, 1.4)
+    line(0.5, 0.5, angle, reach, 1.3)
     for (let j = 1; j <= TWIGS; j++) {
       const along = (reach * (j + random())) / (TWIGS + 1)
       const place = [0.5 + along * Math.cos(angle), 0.5 + along * Math.sin(angle)] as const

@@ -56,7 +56,7 @@ const fogForm: typeof deckForm = {
 
 /** Layers that `WeatherBlend` sets: cumulus, a deck over them or banks of fog, cirrus. */
 export const valleyLayers = [
-  { baseAltitude: 1500, topAltitude: 2700, coverage: 0, wind: { east: 6, north: 2 } },
+  { baseAltitude: 1950, topAltitude: 3150, coverage: 0, wind: { east: 6, north: 2 } },
   {
     ...deckForm,
     coverage: 0,
@@ -66,11 +66,14 @@ export const valleyLayers = [
   { ...cloudPreset('cirrus').at(0).parameters, coverage: 0, wind: { east: 26, north: -8 } }
 ]
 
-/** Most steps to the light, and least depth of a step, in banks of fog: they are soft, and have no bumps that shade each other. */
-const FOG_STEPS = { light: 1, depth: 1.5 }
+/**
+ * Most steps to the light, least depth of a step, and part of the steps through a layer, in banks of fog: they are soft, and
+ * have no bumps that shade each other.
+ */
+const FOG_STEPS = { light: 1, depth: 1.5, layer: 0.6 }
 
 /** Likewise in decks, and in what is below them. */
-const DECK_STEPS = { light: 2, depth: 0.6 }
+const DECK_STEPS = { light: 2, depth: 0.6, layer: 1 }
 
 /** Rates below cumulus and below the deck over that around the camera, which stands between their cores [–]. */
 const SHAFTS = [4, 2] as const
@@ -128,7 +131,12 @@ export class WeatherBlend {
     const steps = isDeck ? DECK_STEPS : FOG_STEPS
     const fine = typeof quality === 'string' ? cloudQualities[quality] : quality
     const lightSteps = Math.min(fine.lightSteps, steps.light)
-    return { ...fine, lightSteps, depthStep: Math.max(fine.depthStep, steps.depth) }
+    return {
+      ...fine,
+      lightSteps,
+      depthStep: Math.max(fine.depthStep, steps.depth),
+      layerSteps: Math.round(fine.layerSteps * steps.layer)
+    }
   }
 
   /**
