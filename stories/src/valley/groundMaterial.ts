@@ -5,9 +5,7 @@ import {
   dFdx,
   dFdy,
   float,
-  floor,
   Fn,
-  fract,
   If,
   mix,
   normalWorldGeometry,
@@ -23,29 +21,13 @@ import {
 import type { Texture } from 'three'
 import type { Node } from 'three/webgpu'
 import { createNoiseTexture } from '../globe/detailNoise'
+import { crops, roadAt } from './fields'
 import { PatchMap } from './PatchMap'
-import { VILLAGE } from './places'
 import type { Relief } from './relief'
 import { VertexLitMaterial } from './VertexLitMaterial'
 
 /** Radius of the planet, away from which the land bends [m]. */
 export const RADIUS = 6_371_000
-
-/** Colours of fields, linear sRGB: hay, young corn, earth, clover, ripe corn. */
-const CROPS = [
-  [0.133, 0.15, 0.054],
-  [0.066, 0.112, 0.034],
-  [0.12, 0.096, 0.06],
-  [0.1, 0.128, 0.045],
-  [0.25, 0.192, 0.066]
-] as const
-
-/** Width of a strip of fields [m]. */
-export const STRIP = 70
-
-/** Distance between two furrows, and between the tracks of a farmer's wheels [m]. */
-const FURROW = 2.6
-const LANE = 17.5
 
 /** Height up to which land is farmed [m]. */
 export const FARMED = 40
@@ -55,45 +37,6 @@ const FALLEN_SNOW = 2300
 
 /** Part of a snowed wood that is dark, seen from afar. */
 const WOODS = 0.84
-
-/** Half width of the road from the village to the lake [m]. */
-export const HALF_ROAD = 2.2
-
-/** Fields in strips, with their furrows; grass in some. */
-function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'> {
-  const { x, z } = positionWorld
-  const across = x
-    .div(STRIP)
-    .add(sin(z.div(300)).mul(0.3))
-    .toConst()
-  const strip = floor(across).toConst()
-  const row = floor(z.div(160).add(strip.mul(0.7))).toConst()
-  const chance = fract(sin(strip.mul(127.1).add(row.mul(311.7))).mul(43.76)).toConst()
-  let color = grass
-  for (const [i, crop] of CROPS.entries()) {
-    color = chance.greaterThan(0.4 + 0.13 * i).select(vec3(...crop), color)
-  }
-  // Furrows along the strips, until they are as fine as pixels; wheels leave their tracks in corn.
-  const furrows = sin(across.mul((2 * Math.PI * STRIP) / FURROW)).mul(smoothstep(170, 40, distance))
-  const aside = fract(across.mul(STRIP / LANE))
-    .sub(0.5)
-    .abs()
-    .mul(LANE)
-  const track = smoothstep(0.5, 0.2, aside.sub(0.9).abs()).mul(smoothstep(700, 250, distance))
-  const isCorn = chance.greaterThan(0.4).select(1, 0)
-  return color.mul(furrows.mul(0.12).add(1).sub(track.mul(isCorn).mul(0.3)))
-}
-
-/** 1 on that road. Twin of the middle: `roadMiddle` of the ground. */
-function roadAt(): Node<'float'> {
-  const { x, z } = positionWorld
-  const middle = sin(z.div(95))
-    .mul(14)
-    .add(sin(z.div(310)).mul(38))
-    .add(VILLAGE.x - 44)
-  const isSouth = smoothstep(-300, -285, z)
-  return smoothstep(HALF_ROAD + 0.6, HALF_ROAD - 0.4, x.sub(middle).abs()).mul(isSouth)
-}
 
 /** Distances within which the finest grain of the ground is drawn, and that of tufts [m]. */
 const NEAR = 200
@@ -281,17 +224,16 @@ export function groundMaterial(
     return found
   })().toVar()
   const crowns = clumps.mul(1.3).add(patches).mul(CROWNS).mul(forest)
-  // Seen along the ground, differences between pixels are those of noise.
-  const facing = smoothstep(
-    0.1,
-    0.45,
-    broadNormal.dot(cameraPosition.sub(positionWorld).normalize())
-  )
-  const relieved = crowns
-    .mul(upTo(WOODED))
-    .add(cracks.x)
-    .mul(facing)
-    .add(grain.mul(GRASS).mul(upTo(SHADED)))
+  const relieved = Fn(() => {
+    const raised = grain.mul(GRASS).mul(upTo(SHADED)).toVar()
+    If(forest.add(rocky).greaterThan(0), () => {
+      // Seen along the ground, differences between pixels are those of noise.
+      const way = cameraPosition.sub(positionWorld).normalize()
+      const facing = smoothstep(0.1, 0.45, broadNormal.dot(way))
+      raised.addAssign(crowns.mul(upTo(WOODED)).add(cracks.x).mul(facing))
+    })
+    return raised
+  })().toVar()
   const normal = grainNormal(broadNormal, relieved).toVar()
   material.normalNode = transformNormalToView(normal)
   const dry = broad.mul(0.6).add(fine.mul(0.28)).add(0.43).clamp()
@@ -320,13 +262,7 @@ export function groundMaterial(
     .toVar()
   const hue = mix(vec3(0.93, 1.02, 0.86), vec3(1.08, 0.99, 1.06), tuft.add(0.5))
   const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.4)))
-  let color: Node<'vec3'> = mix(farmed, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
-  color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
-  color = mix(color, trees, forest)
-  color = mix(color.mul(bright), rock.mul(bright), rocky)
-  // Wet rough ground: of what it scatters, a share 1 − 1/n² comes back (Lekner & Dorf 1988).
-  color = color.div(mix(vec3(1), color.oneMinus().mul(1.777).add(color), wetnessNode))
-  const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW))
+  const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW)).toVar()
   const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
   // Of woods one sees the trunks and the undersides of branches, too.
@@ -334,7 +270,28 @@ export function groundMaterial(
   // It lies in cracks, and is blown off what is between them.
   const steep = slope.add(cracks.y.mul(0.06))
   const whitened = snow.mul(smoothstep(0.46, 0.3, steep)).mul(dark.oneMinus())
-  color = mix(color, white, whitened)
+  // Heights are those that no noise takes a part beyond.
+  const color = Fn(() => {
+    const result = farmed.toVar()
+    const cover = (other: Node<'vec3'>, share: Node<'float'>): void =>
+      void result.assign(mix(result, other, share))
+    If(height.greaterThan(350), () =>
+      cover(alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
+    )
+    If(height.lessThan(4.5), () =>
+      cover(vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
+    )
+    If(forest.greaterThan(0), () => cover(trees, forest))
+    result.mulAssign(bright)
+    If(rocky.greaterThan(0), () => cover(rock.mul(bright), rocky))
+    // Wet rough ground: of what it scatters, a share 1 − 1/n² comes back (Lekner & Dorf 1988).
+    If(wetnessNode.greaterThan(0), () => {
+      const back = result.oneMinus().mul(1.777).add(result)
+      result.divAssign(mix(vec3(1), back, wetnessNode))
+    })
+    If(snowLine.greaterThan(900), () => cover(white, whitened))
+    return result
+  })()
   material.colorNode = color
   material.emissiveNode = lamplight
   return material
