@@ -41,12 +41,7 @@ gpuTest("the valley's map of coarse noise has it where it is", async t => {
   const renderer = await t.createRenderer()
   const draw = random(4)
   const picture = createNoiseTexture()
-  const noise = coarseNoise(at =>
-    texture(picture, at)
-      .level(float(TEXEL_LEVEL))
-      .r.sub(0.5)
-      .mul(2)
-  )
+  const noise = coarseNoise(at => texture(picture, at).level(float(TEXEL_LEVEL)).r.sub(0.5).mul(2))
   const map = new PatchMap(noise)
   const inputs = Array.from({ length: 200 }, () => {
     const [x, z] = [0, 1].map(() => Math.fround(MAPPED * (2 * draw() - 1)))

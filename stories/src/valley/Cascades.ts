@@ -24,27 +24,27 @@ interface FilterInputs {
 }
 
 /** Part of the light that passes: of four places around, turned from pixel to pixel, or of two where both have all of it or none. */
-const softShadowFilter = /*#__PURE__*/ Fn(
-  (inputs): Node<'float'> => {
-    const { depthTexture, shadowCoord, shadow } = inputs as unknown as FilterInputs
-    const angle = interleavedGradientNoise(screenCoordinate.xy).mul(2 * Math.PI)
-    const aside = vec2(cos(angle), sin(angle))
-      .mul(SPREAD / shadow.mapSize.x)
-      .toConst()
-    const across = vec2(aside.y.negate(), aside.x)
-    const { xy, z } = shadowCoord
-    const passing = (place: Node<'vec2'>): Node<'float'> =>
-      texture(depthTexture, place).compare(z) as unknown as Node<'float'>
-    const meanOf = (way: Node<'vec2'>): Node<'float'> =>
-      passing(xy.add(way)).add(passing(xy.sub(way))).mul(0.5)
-    const result = meanOf(aside).toVar()
-    If(result.greaterThan(0).and(result.lessThan(1)), () => {
-      result.addAssign(meanOf(across))
-      result.mulAssign(0.5)
-    })
-    return result
-  }
-)
+const softShadowFilter = /*#__PURE__*/ Fn((inputs): Node<'float'> => {
+  const { depthTexture, shadowCoord, shadow } = inputs as unknown as FilterInputs
+  const angle = interleavedGradientNoise(screenCoordinate.xy).mul(2 * Math.PI)
+  const aside = vec2(cos(angle), sin(angle))
+    .mul(SPREAD / shadow.mapSize.x)
+    .toConst()
+  const across = vec2(aside.y.negate(), aside.x)
+  const { xy, z } = shadowCoord
+  const passing = (place: Node<'vec2'>): Node<'float'> =>
+    texture(depthTexture, place).compare(z) as unknown as Node<'float'>
+  const meanOf = (way: Node<'vec2'>): Node<'float'> =>
+    passing(xy.add(way))
+      .add(passing(xy.sub(way)))
+      .mul(0.5)
+  const result = meanOf(aside).toVar()
+  If(result.greaterThan(0).and(result.lessThan(1)), () => {
+    result.addAssign(meanOf(across))
+    result.mulAssign(0.5)
+  })
+  return result
+})
 
 /** Cascades of shadows that are soft near the camera alone: farther away a pixel takes one look-up. */
 export class Cascades extends CSMShadowNode {
