@@ -248,13 +248,6 @@ export function groundMaterial(
   })()
   const canopy = smoothstep(...CANOPY, clumps.add(patches.mul(0.4)))
   const trees = mix(vec3(0.009, 0.016, 0.008), vec3(0.033, 0.046, 0.018), canopy)
-  const weathered = fine.mul(0.35).add(cracks.y.mul(0.55)).add(0.5).clamp()
-  const rock = mix(vec3(0.105, 0.1, 0.094), vec3(0.29, 0.274, 0.247), weathered)
-  const alpine = mix(
-    vec3(0.095, 0.1, 0.045),
-    rock,
-    smoothstep(1050, 1700, height.add(broad.mul(150)))
-  )
   // Tufts stand in the light, gaps between them are dark.
   const tuft = smoothstep(-0.4, 0.45, grain)
     .sub(0.5)
@@ -267,12 +260,21 @@ export function groundMaterial(
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
   // Of woods one sees the trunks and the undersides of branches, too.
   const dark = forest.mul(fine.mul(0.25).add(WOODS)).clamp()
-  // It lies in cracks, and is blown off what is between them.
-  const steep = slope.add(cracks.y.mul(0.06))
-  const whitened = snow.mul(smoothstep(0.46, 0.3, steep)).mul(dark.oneMinus())
   // Heights are those that no noise takes a part beyond.
   const color = Fn(() => {
     const result = farmed.toVar()
+    // Before branches: three computes in each of them what it meets there first.
+    const cracked = cracks.toConst()
+    const weathered = fine.mul(0.35).add(cracked.y.mul(0.55)).add(0.5).clamp()
+    const rock = mix(vec3(0.105, 0.1, 0.094), vec3(0.29, 0.274, 0.247), weathered)
+    const alpine = mix(
+      vec3(0.095, 0.1, 0.045),
+      rock,
+      smoothstep(1050, 1700, height.add(broad.mul(150)))
+    )
+    // It lies in cracks, and is blown off what is between them.
+    const steep = slope.add(cracked.y.mul(0.06))
+    const whitened = snow.mul(smoothstep(0.46, 0.3, steep)).mul(dark.oneMinus())
     const cover = (other: Node<'vec3'>, share: Node<'float'>): void =>
       void result.assign(mix(result, other, share))
     If(height.greaterThan(350), () =>
