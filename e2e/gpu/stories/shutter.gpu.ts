@@ -1,6 +1,14 @@
-import { DataTexture, NearestFilter, Vector2 } from 'three'
+import {
+  DataTexture,
+  Mesh,
+  NearestFilter,
+  OrthographicCamera,
+  PlaneGeometry,
+  Scene,
+  Vector2
+} from 'three'
 import { texture, uniform, vec4 } from 'three/tsl'
-import { NodeMaterial, QuadMesh } from 'three/webgpu'
+import { NodeMaterial } from 'three/webgpu'
 import { shutter } from '../../../stories/src/valley/shutter'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -20,11 +28,14 @@ gpuTest('a picture that moves is blurred by as much, about where it is', async t
   const velocity = uniform(new Vector2())
   const material = new NodeMaterial()
   material.fragmentNode = shutter(texture(stripe), vec4(velocity, 0, 0))
-  const quad = new QuadMesh(material)
+  const scene = new Scene()
+  scene.add(new Mesh(new PlaneGeometry(2, 2), material))
+  const camera = new OrthographicCamera(-1, 1, 1, -1, -1, 1)
+  camera.updateMatrixWorld()
   /** Light of the columns of the picture after a motion across it [pixels]. */
   const columnsAfter = async (pixels: number): Promise<number[]> => {
     velocity.value.set((2 * pixels) / SIZE, 0)
-    const picture = await t.render(renderer, quad, quad.camera, { width: SIZE, height: SIZE })
+    const picture = await t.render(renderer, scene, camera, { width: SIZE, height: SIZE })
     return Array.from({ length: SIZE }, (_, x) => picture.at(x, SIZE / 2)[0])
   }
   for (const [pixels, seen] of [
