@@ -26,7 +26,7 @@ export class PatchMap {
   /** @param noise - Two kinds of noise in [−{@link MOST}, {@link MOST}] at a place [m], in cells that are not much finer than a texel. */
   constructor(noise: (place: Node<'vec3'>) => Node<'vec2'>) {
     const { x, y } = uv().sub(0.5).mul(WIDTH)
-    const deviation = noise(vec3(x, 0, y.add(MIDDLE)) as Node<'vec3'>)
+    const deviation = noise(vec3(x, 0, y.add(MIDDLE)))
     this.#map = rtt(deviation.div(2 * MOST).add(0.5), SIZE, SIZE, {
       type: UnsignedByteType,
       format: RGFormat,

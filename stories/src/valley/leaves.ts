@@ -163,8 +163,7 @@ function createLeafTexture(): DataTexture {
 }
 
 /** Noise of pixels, in [0, 1]: what is finer than these covers as many of them as it would cover of one. */
-const dither = (): Node<'float'> =>
-  hash(screenCoordinate.x.add(screenCoordinate.y.mul(4099))) as Node<'float'>
+const dither = (): Node<'float'> => hash(screenCoordinate.x.add(screenCoordinate.y.mul(4099)))
 
 /**
  * Gives a material of trees their leaves and needles, by texture coordinates: bark, of which vertices are redder than green, and
@@ -188,7 +187,7 @@ export function setFoliage(material: NodeMaterial, fallen: Node<'float'> | null 
   material.normalNode = normalViewGeometry
   if (fallen === null) {
     material.maskNode = hasLeaf.or(isSolid)
-    material.colorNode = isSolid.select(1, leaf.r.mul(1.25).add(0.22)) as Node<'float'>
+    material.colorNode = isSolid.select(1, leaf.r.mul(1.25).add(0.22))
     return
   }
   // Leaves fall one by one. Twigs are finer than pixels from near by.

@@ -16,8 +16,7 @@ export const shutter = (sharp: TextureNode, motion: Node): Node<'vec4'> =>
     const way = (motion as Node<'vec4'>).xy.mul(vec2(0.5, -0.5)).toConst()
     const pixels = way.mul(screenSize).length()
     const count = int(pixels.mul(0.5).add(1.5).min(MOST_SAMPLES)).toConst()
-    const at = (place: Node<'vec2'>): Node<'vec4'> =>
-      sharp.sample(place).level(float(0)) as unknown as Node<'vec4'>
+    const at = (place: Node<'vec2'>): Node<'vec4'> => sharp.sample(place).level(float(0))
     const light = vec4(0).toVar()
     If(count.greaterThan(1), () => {
       Loop(count as unknown as number, ({ i }: { i: Node<'int'> }) => {
