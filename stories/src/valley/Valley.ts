@@ -58,16 +58,13 @@ export interface ValleyState extends ValleyFeatures, ValleyEffects, ValleyFactor
 /** Elevations of the sun between which lamps are lit [degrees]. */
 const LAMPS = [3, -2] as const
 
-/** Fineness of light shafts, by that of clouds. */
+/** Fineness of light shafts, by that of clouds. Coarse ones keep all that shafts are held to, for 0.3 ms less. */
 const SHAFTS: Readonly<Record<CloudQualityName, LightShaftsQuality>> = {
   low: 'low',
-  medium: 'medium',
+  medium: 'low',
   high: 'high',
   ultra: 'high'
 }
-
-/** Cover of the deck over which the sun is hidden: light shafts are faint, and may be coarse. */
-const HIDING = 0.7
 
 /** Elevation of the sun over which moon and night sky light nothing that one sees [degrees]. */
 const NIGHT_LIGHTS = 4
@@ -222,6 +219,7 @@ export class Valley {
     if (date !== before.date) this.#setDay(this.cycle.hour)
     if (hour !== before.hour) this.cycle.hour = hour
     const fineness = typeof quality === 'string' ? quality : 'low'
+    this.#shafts.quality = SHAFTS[fineness]
     this.#land.setQuality(fineness)
     this.#land.showTrees(trees)
     applyFactors(this.#state, this.#style, this.#targets)
@@ -251,10 +249,8 @@ export class Valley {
   }
 
   #applyWeather(atOnce = false): void {
-    const { turbidity, deck } = this.#weather.current
+    const { turbidity } = this.#weather.current
     const { clouds, cloudShadows, precipitation, quality } = this.#state
-    const fineness = typeof quality === 'string' ? quality : 'low'
-    this.#shafts.quality = clouds && deck > HIDING ? 'low' : SHAFTS[fineness]
     this.#node.quality = this.#weather.qualityOf(quality, this.#state.mist)
     this.#falling.set(this.#falls(), atOnce)
     this.#weather.apply(this.#layers, clouds, this.#state.mist, cloudShadows, precipitation)

@@ -7,6 +7,8 @@ export interface Weather {
   readonly cumulus: number
   readonly deck: number
   readonly cirrus: number
+  /** Altitude of the base of cumulus [m]: over the slopes where it is alone, else well below the deck. */
+  readonly base: number
   /** Aerosol of the air over that of clear air. */
   readonly turbidity: number
   /** Share of the mist, in [0, 1]: banks of fog over the lake. */
@@ -17,18 +19,22 @@ export interface Weather {
 }
 
 const dry = { rain: 0, snow: 0 }
+const [HIGH, LOW] = [{ base: 1950 }, { base: 1500 }] as const
 
 export const weathers = {
-  fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...dry },
-  clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...dry },
-  broken: { cumulus: 0.4, deck: 0.55, cirrus: 0, turbidity: 2.5, mist: 0, ...dry },
-  mist: { cumulus: 0, deck: 0, cirrus: 0, turbidity: 3, mist: 1, ...dry },
-  overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...dry },
-  shower: { cumulus: 0, deck: 0.75, cirrus: 0, turbidity: 2.25, mist: 0, rain: 6, snow: 0 },
-  snow: { cumulus: 0, deck: 0.95, cirrus: 0, turbidity: 3, mist: 0, rain: 0, snow: 1.5 }
+  fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...HIGH, ...dry },
+  clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...HIGH, ...dry },
+  broken: { cumulus: 0.4, deck: 0.55, cirrus: 0, turbidity: 2.5, mist: 0, ...LOW, ...dry },
+  mist: { cumulus: 0, deck: 0, cirrus: 0, turbidity: 3, mist: 1, ...LOW, ...dry },
+  overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...LOW, ...dry },
+  shower: { cumulus: 0, deck: 0.75, cirrus: 0, turbidity: 2.25, mist: 0, ...LOW, rain: 6, snow: 0 },
+  snow: { cumulus: 0, deck: 0.95, cirrus: 0, turbidity: 3, mist: 0, ...LOW, rain: 0, snow: 1.5 }
 } satisfies Record<string, Weather>
 
 export type WeatherName = keyof typeof weathers
+
+/** Height of cumulus from its base [m]. */
+const TALL = 1200
 
 /** Form of the deck. */
 const deckForm = {
@@ -56,7 +62,7 @@ const fogForm: typeof deckForm = {
 
 /** Layers that `WeatherBlend` sets: cumulus, a deck over them or banks of fog, cirrus. */
 export const valleyLayers = [
-  { baseAltitude: 1950, topAltitude: 3150, coverage: 0, wind: { east: 6, north: 2 } },
+  { baseAltitude: 1500, topAltitude: 2700, coverage: 0, wind: { east: 6, north: 2 } },
   {
     ...deckForm,
     coverage: 0,
@@ -152,10 +158,11 @@ export class WeatherBlend {
     shadow: boolean,
     falls: boolean
   ): void {
-    const { cumulus, cirrus, rain, snow } = this.current
+    const { cumulus, cirrus, base, rain, snow } = this.current
     const rates = [rain * SHAFTS[0], rain * SHAFTS[1] + snow, 0]
     // The deck and banks of fog are one layer: one goes before the other comes.
     const foggy = this.#fog(hasMist)
+    layers.at(0).set({ baseAltitude: base, topAltitude: base + TALL })
     layers.at(1).set(foggy > 0 ? fogForm : deckForm)
     const covers = [cumulus, Math.abs(foggy), cirrus]
     const freezingLevel = snow > 0 ? 0 : FREEZING
