@@ -19,6 +19,7 @@ export interface Weather {
 }
 
 const dry = { rain: 0, snow: 0 }
+/** Cumulus alone, and below a deck. */
 const [HIGH, LOW] = [{ base: 1950 }, { base: 1500 }] as const
 
 export const weathers = {
