@@ -146,8 +146,8 @@ const halos: Still[] = [
 const valleys: ValleyStill[] = [
   {
     name: 'valley-morning',
-    about: 'mist over the lake, peaks in the first sun',
-    valley: { view: 'slope', hour: 5, weather: 'mist' }
+    about: 'mist over the lake, in the shadow of a mountain and in the sun',
+    valley: { view: 'slope', hour: 7, weather: 'mist' }
   },
   {
     name: 'valley-day',

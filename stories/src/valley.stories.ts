@@ -140,8 +140,8 @@ type Story = StoryObj<ValleyArgs>
 /** A day in a valley: sun, moon and stars, clouds and their shadows, mist, water and a village. */
 export const Day: Story = { name: 'A day', tags: ['screenshot'] }
 
-/** Mist over the lake before the sun is over the mountains. */
-export const Morning: Story = { args: { hour: 5, weather: 'mist', view: 'slope', dayLength: 1800 } }
+/** Mist over the lake, in the shadow of a mountain and in the sun. */
+export const Morning: Story = { args: { hour: 7, weather: 'mist', view: 'slope', dayLength: 1800 } }
 
 /** The sun is low among broken clouds. */
 export const Evening: Story = {

@@ -1,5 +1,8 @@
-import { vec4 } from 'three/tsl'
+import { float, texture, vec3, vec4 } from 'three/tsl'
+import { createNoiseTexture } from '../../../stories/src/globe/detailNoise'
 import { finestAt, groundHeight } from '../../../stories/src/valley/ground'
+import { coarseNoise } from '../../../stories/src/valley/groundMaterial'
+import { PatchMap } from '../../../stories/src/valley/PatchMap'
 import { flatHeight } from '../../../stories/src/valley/relief'
 import { random } from '../harness/atmosphere'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -26,4 +29,35 @@ gpuTest("the valley's land is lit by slopes of the land that one stands on", asy
   t.note(`heights from ${lowest.toFixed(0)} to ${highest.toFixed(0)} m`)
   expectTrue(highest - lowest > 1000, 'the land is flat')
   expectClose(found, expected, { absolute: 0.5 }, 'height [m]')
+})
+
+/** Blur of noise as coarse as the map's texels. */
+const TEXEL_LEVEL = 1.5
+
+/** Half width of the land that the map holds on all sides [m]. */
+const MAPPED = 9000
+
+gpuTest("the valley's map of coarse noise has it where it is", async t => {
+  const renderer = await t.createRenderer()
+  const draw = random(4)
+  const picture = createNoiseTexture()
+  const noise = coarseNoise(at => texture(picture, at).level(float(TEXEL_LEVEL)).r.sub(0.5).mul(2))
+  const map = new PatchMap(noise)
+  const inputs = Array.from({ length: 200 }, () => {
+    const [x, z] = [0, 1].map(() => Math.fround(MAPPED * (2 * draw() - 1)))
+    return [x, z, 0, 0]
+  })
+  const results = await evaluateOnGpu(renderer, inputs, input => {
+    const place = vec3(input.x, 0, input.y)
+    return vec4(map.sample(place, float(0)), noise(place))
+  })
+  for (const [i, name] of ['broad', 'patches'].entries()) {
+    const pairs = inputs.map((_, row) => [results[4 * row + i], results[4 * row + 2 + i]])
+    const apart = Math.hypot(...pairs.map(([found, right]) => found - right))
+    const share = apart / Math.hypot(...pairs.map(([, right]) => right))
+    t.note(`${name}: ${(100 * share).toFixed(1)} % of the noise is missed`)
+    expectTrue(share < 0.25, `${name}: ${share}`)
+  }
+  map.dispose()
+  picture.dispose()
 })

@@ -1,6 +1,17 @@
-import { BoxGeometry, DirectionalLight, Mesh, PerspectiveCamera, Scene } from 'three'
+import {
+  AmbientLight,
+  BoxGeometry,
+  DirectionalLight,
+  DoubleSide,
+  Mesh,
+  PerspectiveCamera,
+  Scene
+} from 'three'
 import { uniform } from 'three/tsl'
+import { setFarFoliage, setFoliage } from '../../../stories/src/valley/leaves'
+import { distantTree, leafyTree } from '../../../stories/src/valley/treeShapes'
 import { VertexLitMaterial } from '../../../stories/src/valley/VertexLitMaterial'
+import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 
 gpuTest('snow lies on top of a thing, not on its sides', async t => {
@@ -35,4 +46,44 @@ gpuTest('snow lies on top of a thing, not on its sides', async t => {
   if (!(Math.abs(white[1] - bare[1]) < 1e-3)) throw new Error(`the side is ${white[1]}`)
   if (!(bare[1] > 0)) throw new Error('the side is black')
   material.dispose()
+})
+
+/** Distance of the camera from a tree that fills the picture [m]. */
+const DISTANCE = 24
+
+gpuTest('leaves fall: twigs are left of a crown, and one looks through it far away', async t => {
+  const size = { width: 64, height: 64 }
+  const renderer = await t.createRenderer(size)
+  const scene = new Scene()
+  scene.add(new AmbientLight(0xffffff, 100))
+  const fallen = uniform(0)
+  const coverOf = async (): Promise<number> => {
+    const picture = await t.render(renderer, scene, camera, size)
+    let covered = 0
+    for (let y = 0; y < size.height; y++) {
+      for (let x = 0; x < size.width; x++) if (picture.at(x, y)[1] > 1e-3) covered++
+    }
+    return covered
+  }
+  const camera = new PerspectiveCamera(22, 1, 0.1, 100)
+  camera.position.set(0, 5, DISTANCE)
+  camera.updateMatrixWorld()
+  for (const isNear of [true, false]) {
+    const name = isNear ? 'near' : 'far'
+    const material = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
+    if (isNear) setFoliage(material, fallen)
+    else setFarFoliage(material, fallen)
+    const tree = new Mesh(isNear ? leafyTree('lime', 11) : distantTree('lime', 4), material)
+    scene.add(tree)
+    fallen.value = 0
+    const green = await coverOf()
+    fallen.value = 1
+    const share = (await coverOf()) / green
+    t.note(`${name}: ${green} pixels in leaf, ${(100 * share).toFixed(0)} % of them when bare`)
+    expectTrue(green > 600, `${name}: a tree in leaf has ${green} pixels`)
+    expectTrue(share > 0.15 && share < 0.75, `${name}: a bare tree has ${share} of its pixels`)
+    scene.remove(tree)
+    tree.geometry.dispose()
+    material.dispose()
+  }
 })

@@ -2,7 +2,7 @@ import { Color, DoubleSide, Group, InstancedMesh, Vector3 } from 'three'
 import type { BufferGeometry, Matrix4, PerspectiveCamera } from 'three'
 import type { Node } from 'three/webgpu'
 import { disposeMeshes } from '../scene'
-import { autumnColor, fallenLeaves, setFoliage } from './leaves'
+import { fallenLeaves, setFarFoliage, setFoliage } from './leaves'
 import { VertexLitMaterial } from './VertexLitMaterial'
 
 /** A tree: its place and size, and its brightness over that of its kind. */
@@ -22,8 +22,9 @@ const COS_TURN = Math.cos(0.15)
 const COS_ASIDE = Math.cos(1.08)
 const STEEP = 0.6
 
-/** Part of a crown's upper side that snow covers, at most. */
+/** Part of a crown's upper side that snow covers, at most, and of one without leaves. */
 const SNOWED = 0.7
+const SNOWED_BARE = 0.3
 
 const _place = new Vector3()
 const _direction = new Vector3()
@@ -54,12 +55,13 @@ export class Trees extends Group {
     this.#trees = trees
     this.#distances = distances
     const near = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
-    const fallen = winter?.isBare === true ? fallenLeaves(winter.snow) : undefined
+    const isBare = winter?.isBare === true
+    const fallen = isBare ? fallenLeaves(winter.snow) : null
     setFoliage(near, fallen)
     // Gaps are smaller than pixels elsewhere.
     const far = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
-    if (fallen !== undefined) far.colorNode = autumnColor(fallen)
-    near.snowNode = far.snowNode = winter && winter.snow.mul(SNOWED)
+    if (fallen !== null) setFarFoliage(far, fallen)
+    near.snowNode = far.snowNode = winter && winter.snow.mul(isBare ? SNOWED_BARE : SNOWED)
     this.levels = geometries.map((geometry, level) => {
       const mesh = new InstancedMesh(geometry, level < leafy ? near : far, trees.length)
       mesh.setColorAt(0, new Color())

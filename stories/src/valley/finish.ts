@@ -4,30 +4,16 @@ import type { PerspectiveCamera } from 'three'
 import { bloom } from 'three/addons/tsl/display/BloomNode.js'
 import { dof } from 'three/addons/tsl/display/DepthOfFieldNode.js'
 import { fxaa } from 'three/addons/tsl/display/FXAANode.js'
-import { motionBlur } from 'three/addons/tsl/display/MotionBlur.js'
 import { smaa } from 'three/addons/tsl/display/SMAANode.js'
 import { taau } from 'three/addons/tsl/display/TAAUNode.js'
 import { traa } from 'three/addons/tsl/display/TRAANode.js'
-import {
-  builtinAOContext,
-  float,
-  Fn,
-  If,
-  int,
-  mrt,
-  output,
-  rtt,
-  screenSize,
-  uv,
-  vec2,
-  vec4,
-  velocity
-} from 'three/tsl'
+import { builtinAOContext, mrt, output, rtt, vec4, velocity } from 'three/tsl'
 import type { Node, Renderer, RenderPipeline } from 'three/webgpu'
 import type { ValleyAir } from '../valleyAir'
 import { LastOcclusion } from './LastOcclusion'
 import { lensOn } from './lens'
 import { PictureNode } from './PictureNode'
+import { shutter } from './shutter'
 import { stillVelocity } from './stillVelocity'
 import { ToneTable } from './ToneTable'
 
@@ -55,13 +41,6 @@ const GLOW = 0.02
 
 /** Pixels along a side of motion blur's velocities over those of the picture. */
 const COARSE = 0.25
-
-/** Motion from which a picture is blurred [pixels]. */
-const MOVING = 0.7
-
-/** Samples of motion blur where little moves, and where much does: one for two pixels in between. */
-const FEWEST_SAMPLES = 2
-const MOST_SAMPLES = 12
 
 /** Pixels along a side of the pictures that are added up to a larger one (TAAU), over those of that. */
 const SMALL = 0.5
@@ -148,8 +127,8 @@ export class ValleyFinish {
       // Unless an effect has drawn it anew, the picture that is metered is blurred, and then exposed.
       const blurred =
         picture === exposure
-          ? exposure.exposed(this.#blurred(this.#air.picture, motion ?? this.#motionOfCamera()))
-          : this.#blurred(this.#drawn(picture, 'MotionBlur'), motion ?? this.#motionOfCamera())
+          ? exposure.exposed(shutter(this.#air.picture, motion ?? this.#motionOfCamera()))
+          : shutter(this.#drawn(picture, 'MotionBlur'), motion ?? this.#motionOfCamera())
       // Bloom reads it, too.
       picture = effects.bloom ? this.#drawn(blurred, 'MotionBlur') : blurred
     }
@@ -175,22 +154,6 @@ export class ValleyFinish {
     const drawn = this.#drawn(motion, 'Motion')
     drawn.scale = COARSE
     return drawn
-  }
-
-  /** A picture as a shutter that is open all of a frame takes it; where little moves, few samples do. */
-  #blurred(sharp: PictureNode, motion: Node): Node {
-    return Fn(() => {
-      const way = (motion as Node<'vec4'>).xy.mul(vec2(0.5, -0.5)).toConst()
-      const pixels = way.mul(screenSize).length().toConst()
-      const count = int(pixels.mul(0.5).add(FEWEST_SAMPLES).min(MOST_SAMPLES)).toConst()
-      const samples = float(count)
-      const light = (sharp.sample(uv()) as Node<'vec4'>).toVar()
-      If(pixels.greaterThan(MOVING), () => {
-        // Three divides the sum of one more.
-        light.assign(motionBlur(sharp, way, count).mul(samples.div(samples.add(1))))
-      })
-      return light
-    })()
   }
 
   /**

@@ -5,9 +5,7 @@ import {
   dFdx,
   dFdy,
   float,
-  floor,
   Fn,
-  fract,
   If,
   mix,
   normalWorldGeometry,
@@ -23,28 +21,13 @@ import {
 import type { Texture } from 'three'
 import type { Node } from 'three/webgpu'
 import { createNoiseTexture } from '../globe/detailNoise'
-import { VILLAGE } from './places'
+import { crops, roadAt } from './fields'
+import { PatchMap } from './PatchMap'
 import type { Relief } from './relief'
 import { VertexLitMaterial } from './VertexLitMaterial'
 
 /** Radius of the planet, away from which the land bends [m]. */
 export const RADIUS = 6_371_000
-
-/** Colours of fields, linear sRGB: hay, young corn, earth, clover, ripe corn. */
-const CROPS = [
-  [0.133, 0.15, 0.054],
-  [0.066, 0.112, 0.034],
-  [0.12, 0.096, 0.06],
-  [0.1, 0.128, 0.045],
-  [0.25, 0.192, 0.066]
-] as const
-
-/** Width of a strip of fields [m]. */
-export const STRIP = 70
-
-/** Distance between two furrows, and between the tracks of a farmer's wheels [m]. */
-const FURROW = 2.6
-const LANE = 17.5
 
 /** Height up to which land is farmed [m]. */
 export const FARMED = 40
@@ -54,45 +37,6 @@ const FALLEN_SNOW = 2300
 
 /** Part of a snowed wood that is dark, seen from afar. */
 const WOODS = 0.84
-
-/** Half width of the road from the village to the lake [m]. */
-export const HALF_ROAD = 2.2
-
-/** Fields in strips, with their furrows; grass in some. */
-function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'> {
-  const { x, z } = positionWorld
-  const across = x
-    .div(STRIP)
-    .add(sin(z.div(300)).mul(0.3))
-    .toConst()
-  const strip = floor(across).toConst()
-  const row = floor(z.div(160).add(strip.mul(0.7))).toConst()
-  const chance = fract(sin(strip.mul(127.1).add(row.mul(311.7))).mul(43.76)).toConst()
-  let color = grass
-  for (const [i, crop] of CROPS.entries()) {
-    color = chance.greaterThan(0.4 + 0.13 * i).select(vec3(...crop), color)
-  }
-  // Furrows along the strips, until they are as fine as pixels; wheels leave their tracks in corn.
-  const furrows = sin(across.mul((2 * Math.PI * STRIP) / FURROW)).mul(smoothstep(170, 40, distance))
-  const aside = fract(across.mul(STRIP / LANE))
-    .sub(0.5)
-    .abs()
-    .mul(LANE)
-  const track = smoothstep(0.5, 0.2, aside.sub(0.9).abs()).mul(smoothstep(700, 250, distance))
-  const isCorn = chance.greaterThan(0.4).select(1, 0)
-  return color.mul(furrows.mul(0.12).add(1).sub(track.mul(isCorn).mul(0.3)))
-}
-
-/** 1 on that road. Twin of the middle: `roadMiddle` of the ground. */
-function roadAt(): Node<'float'> {
-  const { x, z } = positionWorld
-  const middle = sin(z.div(95))
-    .mul(14)
-    .add(sin(z.div(310)).mul(38))
-    .add(VILLAGE.x - 44)
-  const isSouth = smoothstep(-300, -285, z)
-  return smoothstep(HALF_ROAD + 0.6, HALF_ROAD - 0.4, x.sub(middle).abs()).mul(isSouth)
-}
 
 /** Distances within which the finest grain of the ground is drawn, and that of tufts [m]. */
 const NEAR = 200
@@ -117,7 +61,10 @@ const CRACKS = [
 const LAYERED = 1.7
 
 /** Pixels over which rock is blurred: its bumps are differences between pixels, of which sharp ones would be pepper. */
-const BLURRED = 2
+const BLURRED = 1.5
+
+/** Anisotropy of rock. Less: walls seen from aside are smeared down their slopes. */
+const ROCK_ANISOTROPY = 4
 
 /** Widths over which noise of crowns, and of clumps of grass elsewhere, repeats [m]; share of woods from which ground is theirs. */
 const CROWNED = 43
@@ -193,6 +140,18 @@ function cracksIn(
   return sum
 }
 
+/** Periods of the noise that tells broad parts of the land apart, and of that of patches [m]. */
+const BROAD = [1310, 4170] as const
+const PATCHES = 390
+
+/** Coarse noise of the land, by a place [m]: of its broad parts, and of patches. */
+export const coarseNoise =
+  (noise: (at: Node<'vec2'>) => Node<'float'>) =>
+  (place: Node<'vec3'>): Node<'vec2'> => {
+    const [first, second, patches] = [...BROAD, PATCHES].map(each => noise(turned(place, each)))
+    return vec2(first.add(second), patches)
+  }
+
 /** Colour and roughness of the ground: meadows, forest, rock, sand and snow by height and slope. */
 export function groundMaterial(
   { wetnessNode, snowCoverNode }: SurfaceWater,
@@ -203,22 +162,24 @@ export function groundMaterial(
   const place = positionWorld.xz
   const picture = createNoiseTexture()
   // Each of its many scales is blurred far away: there are coarser ones. The finest are seen along the ground.
-  const grazed = picture.clone()
+  const [grazed, stone] = [picture.clone(), picture.clone()]
   picture.anisotropy = 1
   grazed.anisotropy = 2
-  for (const each of [picture, grazed]) {
-    material.addEventListener('dispose', () => each.dispose())
-  }
+  stone.anisotropy = ROCK_ANISOTROPY
   // The coarsest of its five octaves has 8 cells a period. Seen from above: with heights in it, slopes that go with them have
   // streaks.
   const turnedBy = (period: number): Node<'vec2'> => turned(positionWorld, period)
   const noiseAt = (at: Node<'vec2'>): Node<'float'> => texture(picture, at).r.sub(0.5).mul(2)
-  const noise = (period: number): Node<'float'> => noiseAt(turnedBy(period))
+  const patchMap = new PatchMap(coarseNoise(noiseAt))
+  for (const each of [picture, grazed, stone, patchMap]) {
+    material.addEventListener('dispose', () => each.dispose())
+  }
   // A period that is a few pixels wide would show as a net.
   const distance = positionView.z.negate()
   const upTo = (metres: number): Node<'float'> => smoothstep(metres, metres / 4, distance)
-  const broad = noise(1310).add(noise(4170)).mul(0.8).toVar()
-  const patches = noise(390).mul(upTo(24_000)).toVar()
+  const coarse = patchMap.sample().toConst()
+  const broad = coarse.x.mul(0.8).toVar()
+  const patches = coarse.y.mul(upTo(24_000)).toVar()
   const near = turnedBy(1.9).toVar()
   const [across, along] = [dFdx(near).toVar(), dFdy(near).toVar()]
   // Its cells are seen near by: bent, they are no squares.
@@ -258,22 +219,21 @@ export function groundMaterial(
     If(rocky.greaterThan(0), () => {
       // Where walls turn, noise parts one from the other.
       const isEastern = broadNormal.x.abs().sub(broadNormal.z.abs()).greaterThan(fine.mul(0.25))
-      found.assign(cracksIn(grazed, isEastern, footprint).mul(rocky))
+      found.assign(cracksIn(stone, isEastern, footprint).mul(rocky))
     })
     return found
   })().toVar()
   const crowns = clumps.mul(1.3).add(patches).mul(CROWNS).mul(forest)
-  // Seen along the ground, differences between pixels are those of noise.
-  const facing = smoothstep(
-    0.1,
-    0.45,
-    broadNormal.dot(cameraPosition.sub(positionWorld).normalize())
-  )
-  const relieved = crowns
-    .mul(upTo(WOODED))
-    .add(cracks.x)
-    .mul(facing)
-    .add(grain.mul(GRASS).mul(upTo(SHADED)))
+  const relieved = Fn(() => {
+    const raised = grain.mul(GRASS).mul(upTo(SHADED)).toVar()
+    If(forest.add(rocky).greaterThan(0), () => {
+      // Seen along the ground, differences between pixels are those of noise.
+      const way = cameraPosition.sub(positionWorld).normalize()
+      const facing = smoothstep(0.1, 0.45, broadNormal.dot(way))
+      raised.addAssign(crowns.mul(upTo(WOODED)).add(cracks.x).mul(facing))
+    })
+    return raised
+  })().toVar()
   const normal = grainNormal(broadNormal, relieved).toVar()
   material.normalNode = transformNormalToView(normal)
   const dry = broad.mul(0.6).add(fine.mul(0.28)).add(0.43).clamp()
@@ -288,13 +248,6 @@ export function groundMaterial(
   })()
   const canopy = smoothstep(...CANOPY, clumps.add(patches.mul(0.4)))
   const trees = mix(vec3(0.009, 0.016, 0.008), vec3(0.033, 0.046, 0.018), canopy)
-  const weathered = fine.mul(0.35).add(cracks.y.mul(0.55)).add(0.5).clamp()
-  const rock = mix(vec3(0.105, 0.1, 0.094), vec3(0.29, 0.274, 0.247), weathered)
-  const alpine = mix(
-    vec3(0.095, 0.1, 0.045),
-    rock,
-    smoothstep(1050, 1700, height.add(broad.mul(150)))
-  )
   // Tufts stand in the light, gaps between them are dark.
   const tuft = smoothstep(-0.4, 0.45, grain)
     .sub(0.5)
@@ -302,21 +255,45 @@ export function groundMaterial(
     .toVar()
   const hue = mix(vec3(0.93, 1.02, 0.86), vec3(1.08, 0.99, 1.06), tuft.add(0.5))
   const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.4)))
-  let color: Node<'vec3'> = mix(farmed, alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
-  color = mix(color, vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
-  color = mix(color, trees, forest)
-  color = mix(color.mul(bright), rock.mul(bright), rocky)
-  // Wet rough ground: of what it scatters, a share 1 − 1/n² comes back (Lekner & Dorf 1988).
-  color = color.div(mix(vec3(1), color.oneMinus().mul(1.777).add(color), wetnessNode))
-  const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW))
+  const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW)).toVar()
   const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
   // Of woods one sees the trunks and the undersides of branches, too.
   const dark = forest.mul(fine.mul(0.25).add(WOODS)).clamp()
-  // It lies in cracks, and is blown off what is between them.
-  const steep = slope.add(cracks.y.mul(0.06))
-  const whitened = snow.mul(smoothstep(0.46, 0.3, steep)).mul(dark.oneMinus())
-  color = mix(color, white, whitened)
+  // Heights are those that no noise takes a part beyond.
+  const color = Fn(() => {
+    const result = farmed.toVar()
+    // Before branches: three computes in each of them what it meets there first.
+    const cracked = cracks.toConst()
+    const weathered = fine.mul(0.35).add(cracked.y.mul(0.55)).add(0.5).clamp()
+    const rock = mix(vec3(0.105, 0.1, 0.094), vec3(0.29, 0.274, 0.247), weathered)
+    const alpine = mix(
+      vec3(0.095, 0.1, 0.045),
+      rock,
+      smoothstep(1050, 1700, height.add(broad.mul(150)))
+    )
+    // It lies in cracks, and is blown off what is between them.
+    const steep = slope.add(cracked.y.mul(0.06))
+    const whitened = snow.mul(smoothstep(0.46, 0.3, steep)).mul(dark.oneMinus())
+    const cover = (other: Node<'vec3'>, share: Node<'float'>): void =>
+      void result.assign(mix(result, other, share))
+    If(height.greaterThan(350), () =>
+      cover(alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
+    )
+    If(height.lessThan(4.5), () =>
+      cover(vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
+    )
+    If(forest.greaterThan(0), () => cover(trees, forest))
+    result.mulAssign(bright)
+    If(rocky.greaterThan(0), () => cover(rock.mul(bright), rocky))
+    // Wet rough ground: of what it scatters, a share 1 − 1/n² comes back (Lekner & Dorf 1988).
+    If(wetnessNode.greaterThan(0), () => {
+      const back = result.oneMinus().mul(1.777).add(result)
+      result.divAssign(mix(vec3(1), back, wetnessNode))
+    })
+    If(snowLine.greaterThan(900), () => cover(white, whitened))
+    return result
+  })()
   material.colorNode = color
   material.emissiveNode = lamplight
   return material

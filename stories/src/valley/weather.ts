@@ -7,6 +7,8 @@ export interface Weather {
   readonly cumulus: number
   readonly deck: number
   readonly cirrus: number
+  /** Altitude of the base of cumulus [m]: over the slopes where it is alone, else well below the deck. */
+  readonly base: number
   /** Aerosol of the air over that of clear air. */
   readonly turbidity: number
   /** Share of the mist, in [0, 1]: banks of fog over the lake. */
@@ -14,16 +16,18 @@ export interface Weather {
   /** Rates of rain from cumulus, and of snow from the deck, as water [mm/h]. */
   readonly rain: number
   readonly snow: number
-  /** Altitude of the tops of cumulus [m], and flashes of lightning a minute. */
-  readonly tops: number
+  /** Height of cumulus from its base [m], and flashes of lightning a minute. */
+  readonly tall: number
   readonly flashes: number
 }
 
-const calm = { rain: 0, snow: 0, tops: 2700, flashes: 0 }
+const calm = { base: 1500, tall: 1200, rain: 0, snow: 0, flashes: 0 }
+/** Cumulus alone. */
+const high = { ...calm, base: 1950 }
 
 export const weathers = {
-  fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...calm },
-  clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...calm },
+  fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...high },
+  clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...high },
   broken: { cumulus: 0.4, deck: 0.55, cirrus: 0, turbidity: 2.5, mist: 0, ...calm },
   mist: { cumulus: 0, deck: 0, cirrus: 0, turbidity: 3, mist: 1, ...calm },
   overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...calm },
@@ -37,7 +41,7 @@ export const weathers = {
     mist: 0,
     ...calm,
     rain: 8,
-    tops: 7500,
+    tall: 6000,
     flashes: 4
   }
 } satisfies Record<string, Weather>
@@ -70,7 +74,7 @@ const fogForm: typeof deckForm = {
 
 /** Layers that `WeatherBlend` sets: cumulus, a deck over them or banks of fog, cirrus. */
 export const valleyLayers = [
-  { baseAltitude: 1500, topAltitude: calm.tops, coverage: 0, wind: { east: 6, north: 2 } },
+  { baseAltitude: 1500, topAltitude: 2700, coverage: 0, wind: { east: 6, north: 2 } },
   {
     ...deckForm,
     coverage: 0,
@@ -80,11 +84,14 @@ export const valleyLayers = [
   { ...cloudPreset('cirrus').at(0).parameters, coverage: 0, wind: { east: 26, north: -8 } }
 ]
 
-/** Most steps to the light, and least depth of a step, in banks of fog: they are soft, and have no bumps that shade each other. */
-const FOG_STEPS = { light: 1, depth: 1.5 }
+/**
+ * Most steps to the light, least depth of a step, and part of the steps through a layer, in banks of fog: they are soft, and
+ * have no bumps that shade each other.
+ */
+const FOG_STEPS = { light: 1, depth: 1.5, layer: 0.6 }
 
 /** Likewise in decks, and in what is below them. */
-const DECK_STEPS = { light: 2, depth: 0.6 }
+const DECK_STEPS = { light: 2, depth: 0.6, layer: 1 }
 
 /** Rates below cumulus and below the deck over that around the camera, which stands between their cores [–]. */
 const SHAFTS = [4, 2] as const
@@ -142,7 +149,12 @@ export class WeatherBlend {
     const steps = isDeck ? DECK_STEPS : FOG_STEPS
     const fine = typeof quality === 'string' ? cloudQualities[quality] : quality
     const lightSteps = Math.min(fine.lightSteps, steps.light)
-    return { ...fine, lightSteps, depthStep: Math.max(fine.depthStep, steps.depth) }
+    return {
+      ...fine,
+      lightSteps,
+      depthStep: Math.max(fine.depthStep, steps.depth),
+      layerSteps: Math.round(fine.layerSteps * steps.layer)
+    }
   }
 
   /**
@@ -158,11 +170,11 @@ export class WeatherBlend {
     shadow: boolean,
     falls: boolean
   ): void {
-    const { cumulus, cirrus, rain, snow, tops } = this.current
-    layers.at(0).set({ topAltitude: tops })
+    const { cumulus, cirrus, base, tall, rain, snow } = this.current
     const rates = [rain * SHAFTS[0], rain * SHAFTS[1] + snow, 0]
     // The deck and banks of fog are one layer: one goes before the other comes.
     const foggy = this.#fog(hasMist)
+    layers.at(0).set({ baseAltitude: base, topAltitude: base + tall })
     layers.at(1).set(foggy > 0 ? fogForm : deckForm)
     const covers = [cumulus, Math.abs(foggy), cirrus]
     const freezingLevel = snow > 0 ? 0 : FREEZING

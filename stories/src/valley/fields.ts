@@ -1,0 +1,58 @@
+import { floor, fract, positionWorld, sin, smoothstep, vec3 } from 'three/tsl'
+import type { Node } from 'three/webgpu'
+import { VILLAGE } from './places'
+
+/** Colours of fields, linear sRGB: hay, young corn, earth, clover, ripe corn. */
+const CROPS = [
+  [0.133, 0.15, 0.054],
+  [0.066, 0.112, 0.034],
+  [0.12, 0.096, 0.06],
+  [0.1, 0.128, 0.045],
+  [0.25, 0.192, 0.066]
+] as const
+
+/** Width of a strip of fields [m]. */
+export const STRIP = 70
+
+/** Distance between two furrows, and between the tracks of a farmer's wheels [m]. */
+const FURROW = 2.6
+const LANE = 17.5
+
+/** Half width of the road from the village to the lake [m]. */
+export const HALF_ROAD = 2.2
+
+/** Fields in strips, with their furrows; grass in some. */
+export function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'> {
+  const { x, z } = positionWorld
+  const across = x
+    .div(STRIP)
+    .add(sin(z.div(300)).mul(0.3))
+    .toConst()
+  const strip = floor(across).toConst()
+  const row = floor(z.div(160).add(strip.mul(0.7))).toConst()
+  const chance = fract(sin(strip.mul(127.1).add(row.mul(311.7))).mul(43.76)).toConst()
+  let color = grass
+  for (const [i, crop] of CROPS.entries()) {
+    color = chance.greaterThan(0.4 + 0.13 * i).select(vec3(...crop), color)
+  }
+  // Furrows along the strips, until they are as fine as pixels; wheels leave their tracks in corn.
+  const furrows = sin(across.mul((2 * Math.PI * STRIP) / FURROW)).mul(smoothstep(170, 40, distance))
+  const aside = fract(across.mul(STRIP / LANE))
+    .sub(0.5)
+    .abs()
+    .mul(LANE)
+  const track = smoothstep(0.5, 0.2, aside.sub(0.9).abs()).mul(smoothstep(700, 250, distance))
+  const isCorn = chance.greaterThan(0.4).select(1, 0)
+  return color.mul(furrows.mul(0.12).add(1).sub(track.mul(isCorn).mul(0.3)))
+}
+
+/** 1 on that road. Twin of the middle: `roadMiddle` of the ground. */
+export function roadAt(): Node<'float'> {
+  const { x, z } = positionWorld
+  const middle = sin(z.div(95))
+    .mul(14)
+    .add(sin(z.div(310)).mul(38))
+    .add(VILLAGE.x - 44)
+  const isSouth = smoothstep(-300, -285, z)
+  return smoothstep(HALF_ROAD + 0.6, HALF_ROAD - 0.4, x.sub(middle).abs()).mul(isSouth)
+}

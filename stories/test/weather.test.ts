@@ -1,0 +1,34 @@
+import { CloudLayers, cloudQualities } from '@welkin/clouds'
+import { expect, it } from 'vitest'
+import { valleyLayers, WeatherBlend } from '../src/valley/weather'
+
+const qualityIn = (name: 'fair' | 'mist' | 'overcast'): (typeof cloudQualities)['medium'] => {
+  const quality = new WeatherBlend(name).qualityOf('medium', true)
+  return typeof quality === 'string' ? cloudQualities[quality] : quality
+}
+
+it('banks of fog take fewer steps than clouds, decks as many through their layer', () => {
+  const { medium } = cloudQualities
+  expect(qualityIn('fair')).toEqual(medium)
+  expect(qualityIn('mist').layerSteps).toBeLessThan(0.7 * medium.layerSteps)
+  expect(qualityIn('mist').layerSteps).toBeGreaterThan(4)
+  expect(qualityIn('overcast').layerSteps).toBe(medium.layerSteps)
+})
+
+it('cumulus is higher where there is no deck over it, and comes down while one comes', () => {
+  const blend = new WeatherBlend('fair')
+  const layers = new CloudLayers(valleyLayers)
+  const base = (): number => {
+    blend.apply(layers, true, true, true, true)
+    return layers.at(0).parameters.baseAltitude
+  }
+  const [fair, deck] = [base(), layers.at(1).parameters.baseAltitude]
+  blend.set('broken', false)
+  blend.update(5)
+  const between = base()
+  blend.update(10)
+  const broken = base()
+  expect(fair).toBeGreaterThan(between)
+  expect(between).toBeGreaterThan(broken)
+  expect(layers.at(0).parameters.topAltitude).toBeLessThanOrEqual(deck)
+})
