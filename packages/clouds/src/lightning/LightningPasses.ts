@@ -138,9 +138,7 @@ export class LightningPasses {
           .mul(1 - TURNED_AWAY)
           .add(TURNED_AWAY)
         const facing = normal.dot(ray.direction).negate()
-        const square = width.mul(width)
-        const known = square.div(square.add(depth.mul(depth)))
-        const face = mix(1, mix(limbDarkening(facing), outside, out.y), known)
+        const face = mix(1, mix(limbDarkening(facing), outside, out.y), width.div(width.add(depth)))
         const lit = line.w.mul(out.x).mul(face)
         const displacement = ray.directionView.mul(mean).toConst()
         const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
@@ -180,10 +178,7 @@ export class LightningPasses {
         const shares = seen.shares.sample(place).level(0).toConst() as Vec4
         const opacity = shares.dot(vec4(1)).toConst() as Float
         const distance = shares.dot(seen.distances.sample(place).level(0)).div(opacity.max(1e-3))
-        const rise = distance
-          .sub(mean)
-          .mul(sign)
-          .div(width.add(depth.mul(0.25)))
+        const rise = distance.sub(mean).mul(sign).div(width.add(depth))
         return opacity.greaterThan(FACED).select(rise, STEEPEST).toConst()
       })
       const slope = before.abs().lessThan(after.abs()).select(before, after)
