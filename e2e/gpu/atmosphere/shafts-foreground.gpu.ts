@@ -168,8 +168,8 @@ gpuTest(
     const [none, all] = [float(0) as Float, float(1) as Float]
     const noiseOf = (at: Vec2): Float => at.x.mul(size.width).floor().mul(0.618).fract()
     const [reference, ...rows] = await lostIn(renderer, ['reference', ...fast], {
-      distanceAt: at => noiseOf(at).mul(0.5).exp2().mul(high) as Float,
-      transmittanceAt: at => noiseOf(at).mul(7).fract().mul(0.1).add(0.91).min(1) as Float,
+      distanceAt: at => noiseOf(at).mul(0.5).exp2().mul(high),
+      transmittanceAt: at => noiseOf(at).mul(7).fract().mul(0.1).add(0.91).min(1),
       arrives: distance => distance.greaterThan(high).select(all, none),
       pitch: 30
     })

@@ -2,7 +2,8 @@ import { Vector3 } from 'three'
 import { float, vec2, vec3, vec4 } from 'three/tsl'
 import {
   LostLightGrid,
-  type LostLight
+  type LostLight,
+  type SeenAir
 } from '../../../packages/atmosphere/src/shafts/LostLightGrid'
 import {
   columnAt,
@@ -124,13 +125,18 @@ gpuTest(
     grid.resize(width, height, 2)
     grid.setAir(1, 1, 0, 6.36e6)
     const thinning = float(1e-8) as Float
-    const beyond = (distance: Float): Float => grid.beyond(distance, thinning)
+    const airTo = (distance: Float): SeenAir => ({
+      distance,
+      beyond: grid.beyond(distance, thinning),
+      depth: grid.depthAt(distance, thinning),
+      thinning
+    })
     // Neighbours are at other depths and in other light, so that none are mixed.
     const march = (_: Vec2, pixel: Vec2): LostLight => {
       const isFar = pixel.x.add(pixel.y).mod(2).greaterThan(0.5)
       const distance = isFar.select(1e4, 1000).toConst() as Float
       const lit = vec3(distance.div(1e4)).toConst() as Vec3
-      return { lost: lit.mul(part), lit, all: lit, distance, beyond: beyond(distance), thinning }
+      return { lost: lit.mul(part), lit, all: lit, ...airTo(distance) }
     }
     grid.render(renderer, 1, march)
     // Rounding puts places a little beyond the middles of the first and the last pixels.
@@ -146,7 +152,7 @@ gpuTest(
       places.map(([x, y]) => [x, y, 100, 0]),
       ({ x, y, z }) =>
         vec4(
-          grid.read(vec2(x, y), beyond(z), thinning, float(0), () => vec3(2)),
+          grid.read(vec2(x, y), airTo(z), null, () => vec3(2)),
           0
         )
     )

@@ -98,6 +98,8 @@ export interface SeenAir {
   readonly distance: Float
   /** Part of the light of even air without end that lies beyond what is seen: see {@link LostLightGrid.beyond}. */
   readonly beyond: Float
+  /** log₂ of the distance beyond which that part lies [m]. */
+  readonly depth: Float
   /** See {@link LostLightGrid.thinningOn}. */
   readonly thinning: Float
 }
@@ -197,12 +199,12 @@ export class LostLightGrid {
         const pixel = uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
         const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
         const found = march(at, pixel)
-        const { lost, all, distance, beyond, thinning } = found
+        const { lost, all, distance, beyond, depth, thinning } = found
         const scale = float(LIGHT_SCALE).div(shownOf(beyond)).toConst()
         const growth = this.beyond(distance, thinning).oneMinus()
         const light = log2(luminance(all).max(MIN_LIGHT).mul(LIGHT_SCALE).div(growth))
         lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), light))
-        partsOut.assign(vec4(partsOf(found), this.#depthOf(beyond, thinning)))
+        partsOut.assign(vec4(partsOf(found), depth))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -247,7 +249,7 @@ export class LostLightGrid {
   /** Part by which the air on a ray thins out with each metre [1/m]; `cosView` is the cosine of its angle from the zenith. */
   thinningOn(cosView: Float): Float {
     const half = cosView.mul(0.5).toConst() as Float
-    return half.mul(half).add(this.#grazing).sqrt().add(half).mul(this.#thinning).toConst() as Float
+    return half.mul(half).add(this.#grazing).sqrt().add(half).mul(this.#thinning).toConst()
   }
 
   /** Part of the light of thinning air without end that lies beyond a distance [m]. */
@@ -258,8 +260,13 @@ export class LostLightGrid {
     return path.mul(this.#extinction).add(1).reciprocal()
   }
 
+  /** log₂ of a distance, as it stands for light [m]. */
+  depthAt(distance: Float, thinning: Float): Float {
+    return log2(distance.min(thinning.reciprocal().mul(-Math.log(LEAST_LEFT))))
+  }
+
   /** log₂ of the distance beyond which a part lies [m]. */
-  #depthOf(beyond: Float, thinning: Float): Float {
+  depthOf(beyond: Float, thinning: Float): Float {
     const path = shownOf(beyond).div(beyond.mul(this.#extinction)).toConst() as Float
     const thinned = path.mul(thinning).toConst() as Float
     const mean = thinned.oneMinus().max(LEAST_LEFT).log().negate().div(thinned)
@@ -270,29 +277,29 @@ export class LostLightGrid {
    * Light that a pixel loses, as {@link LostLight} has it.
    *
    * @param at - Its place in the picture.
-   * @param beyond - See {@link SeenAir}.
-   * @param tolerance - Octaves by which its depth may be off: it is as near to those around as that allows.
+   * @param seen - Its air.
+   * @param tolerance - Octaves by which its depth may be off: it is as near to those around as that allows. Null is none.
    * @param lit - Light of its air that is seen, given a factor on the distance of what is seen, and the distance up to which
    *   light is asked for [m]. Called in a branch.
    */
   read(
     at: Vec2,
-    beyond: Float,
-    thinning: Float,
-    tolerance: Float,
+    { beyond, depth: own, thinning }: Omit<SeenAir, 'distance'>,
+    tolerance: Float | null,
     lit: (nearer: Float, most: Float) => Vec3
   ): Vec3 {
     const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
-    const own = this.#depthOf(beyond, thinning).toConst() as Float
-    const part = shownOf(beyond).toConst()
+    const part = shownOf(beyond).toVar()
+    const shownAt = (depth: Float): Float => shownOf(this.beyond(depth.exp2(), thinning)).toConst()
     const moved = (depth: Float): Float =>
-      depth.sub(own).clamp(tolerance.negate(), tolerance).toConst() as Float
-    const shownAt = (depth: Float): Float =>
-      shownOf(this.beyond(depth.exp2() as Float, thinning)).toConst()
-    const known = shownAt(own)
-    const seen = part.mul(shownAt(own.add(moved(mean.w)).toConst() as Float)).div(known)
-    const lost = mean.rgb.mul(seen.div(LIGHT_SCALE)).toVar() as Vec3
+      tolerance ? depth.sub(own).clamp(tolerance.negate(), tolerance).toConst() : float(0)
+    if (tolerance) {
+      If(tolerance.greaterThan(0), () => {
+        part.mulAssign(shownAt(own.add(moved(mean.w)).toConst()).div(shownAt(own)))
+      })
+    }
+    const lost = mean.rgb.mul(part.div(LIGHT_SCALE)).toVar() as Vec3
     const isLit = mean.w.sub(LIT_DEPTH).abs().lessThan(NEAR_MEAN)
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN).and(isLit.not()), () => {
       const size = this.#gridSize
@@ -303,8 +310,9 @@ export class LostLightGrid {
       const isSteep = mean.w.lessThan(STEEP_LIMIT)
       const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
       // Steps of a depth show where the nearest to it counts for more than others.
-      const similar = tolerance.mul(2).max(SIMILAR).toConst()
+      const similar = (tolerance ?? float(0)).mul(2).max(SIMILAR).toConst()
       const even = similar.mul(similar).toConst()
+      const known = shownAt(own)
       // Light, and depth.
       const sums = vec4(0).toVar()
       const weights = float(0).toVar()
@@ -312,7 +320,7 @@ export class LostLightGrid {
         const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
         const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
         const other = sampleLevel0(this.#texels, at).toConst()
-        const light = log2(shownAt(other.w as Float).div(known))
+        const light = log2(shownAt(other.w).div(known))
         const apart = other.w.sub(own).abs().min(DISTINCT).max(light.abs()).toConst()
         const weight = apart.mul(apart).add(even).reciprocal().toConst()
         sums.addAssign(other.mul(weight))
@@ -322,7 +330,7 @@ export class LostLightGrid {
       const farther = sums.w.sub(own).add(2 * SAME_DEPTH)
       const limit = sums.w.add(farther.max(0)).exp2()
       const most = farther.lessThan(SAME_DEPTH).select(limit, FAR) as Float
-      lost.assign(lit(moved(sums.w).exp2() as Float, most).mul(sums.rgb))
+      lost.assign(lit(moved(sums.w).exp2(), most).mul(sums.rgb))
     })
     return lost
   }

@@ -14,7 +14,7 @@ import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
-import { LostLightGrid, THIN_HEIGHT, type LostLight } from './LostLightGrid'
+import { LostLightGrid, THIN_HEIGHT, type LostLight, type SeenAir } from './LostLightGrid'
 import { seenLight, type SeenForeground } from './tsl/seenLight'
 import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf } from './tsl/without'
@@ -26,11 +26,10 @@ const MIN_TRANSMITTANCE = 0.01
 /** Transmittance from which on a foreground is not seen. */
 const CLEAR = 0.99
 
-/** Foreground of a pixel, part of even air beyond what is seen, and octaves by which that may be off. */
-interface Seen {
+/** Air and foreground of a pixel, and octaves by which their depth may be off. */
+interface Seen extends Omit<SeenAir, 'distance'> {
   readonly front?: SeenForeground
-  readonly beyond: Float
-  readonly tolerance: Float
+  readonly tolerance: Float | null
 }
 
 /** End of a view ray: displacement in the mapped space of what gives its direction, its length, and how far one sees [m]. */
@@ -139,8 +138,8 @@ export class ScreenShafts implements ScreenShadows {
     const cosView = end.offset.dot(this.#shafts.view.up).div(end.length) as Float
     const thinning = this.grid.thinningOn(cosView)
     const seen = this.#seenAt(at, end.distance, thinning, true, transmittance)
-    const { front, beyond, tolerance } = seen
-    const lost = this.grid.read(at, beyond, thinning, tolerance, (nearer, most) => {
+    const { front, tolerance } = seen
+    const lost = this.grid.read(at, seen, tolerance, (nearer, most) => {
       const ray = this.#rayTo(end)
       front?.distance.assign(front.distance.mul(nearer).min(most))
       const to = ray.distance.min(most).toConst()
@@ -172,7 +171,9 @@ export class ScreenShafts implements ScreenShadows {
   #seenAt(at: Vec2, to: Float, thinning: Float, isRough: boolean, transmittance?: Float): Seen {
     const { foreground, grid } = this
     const beyond = grid.beyond(to, thinning).toVar()
-    if (foreground === undefined) return { beyond, tolerance: float(0) }
+    const depth = grid.depthAt(to, thinning).toVar()
+    const air = { beyond, depth, thinning }
+    if (foreground === undefined) return { ...air, tolerance: null }
     const passes = transmittance ?? foreground.transmittanceAt(at)
     const isSeen = passes.lessThan(CLEAR).toConst()
     const distance = to.toVar()
@@ -181,9 +182,12 @@ export class ScreenShafts implements ScreenShadows {
       distance.assign(to.min(foreground.distanceAt(at, isRough)))
       beyond.assign(mix(grid.beyond(distance, thinning), beyond, passes))
     })
+    If(isSeen.or(this.#isForward.greaterThan(0)), () => {
+      depth.assign(grid.depthOf(beyond, thinning))
+    })
     const behind = passes.mul(this.#isForward.oneMinus()).toConst()
     const front = { distance, before: passes.oneMinus().toConst(), behind }
-    return { front, beyond, tolerance: isSeen.select(foreground.tolerance, 0).toConst() }
+    return { ...air, front, tolerance: isSeen.select(foreground.tolerance, 0).toConst() }
   }
 
   /** Light that the ray of a pixel of the grid loses. */
@@ -192,7 +196,7 @@ export class ScreenShafts implements ScreenShadows {
     const ray = this.#rayTo(this.#endIn(renderer, at))
     const { distance } = ray
     const thinning = this.grid.thinningOn(ray.cosView)
-    const { front, beyond } = this.#seenAt(at, distance, thinning, false)
+    const { front, beyond, depth } = this.#seenAt(at, distance, thinning, false)
     let seen: ShaftRay = ray
     if (front !== undefined) {
       const { behind, distance: nearest } = front
@@ -205,7 +209,7 @@ export class ScreenShafts implements ScreenShadows {
     }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
     const { all, seen: lit } = seenLight(distance, front, this.#lightOn(ray))
-    return { lost: this.#color(lost), lit, all, distance, beyond, thinning }
+    return { lost: this.#color(lost), lit, all, distance, beyond, depth, thinning }
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
