@@ -7,7 +7,8 @@ const sources = import.meta.glob<string>(
     './*.scene.ts',
     './street/Street.ts',
     './valleyAir.ts',
-    './valleyFactors.ts'
+    './valleyFactors.ts',
+    './valley/flashes.ts'
   ],
   { query: '?raw', import: 'default', eager: true }
 )
