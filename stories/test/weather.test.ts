@@ -32,3 +32,18 @@ it('cumulus is higher where there is no deck over it, and comes down while one c
   expect(between).toBeGreaterThan(broken)
   expect(layers.at(0).parameters.topAltitude).toBeLessThanOrEqual(deck)
 })
+
+it('the level at which snow melts comes down while a shower turns to snow, without a leap', () => {
+  const blend = new WeatherBlend('shower')
+  const layers = new CloudLayers(valleyLayers)
+  blend.set('snow', false)
+  const levels = Array.from({ length: 400 }, () => {
+    blend.update(0.05)
+    blend.apply(layers, true, true, true, true)
+    return layers.at(1).parameters.precipitation?.freezingLevel ?? NaN
+  }).filter(level => !Number.isNaN(level))
+  const steps = levels.slice(1).map((level, i) => levels[i] - level)
+  expect(Math.max(...steps)).toBeLessThan(100)
+  expect(Math.min(...steps)).toBeGreaterThanOrEqual(0)
+  expect(levels.at(-1)).toBe(0)
+})

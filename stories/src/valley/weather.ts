@@ -93,6 +93,9 @@ const FOG_STEPS = { light: 1, depth: 1.5, layer: 0.6 }
 /** Likewise in decks, and in what is below them. */
 const DECK_STEPS = { light: 2, depth: 0.6, layer: 1 }
 
+/** Rate of rain that counts as much as a rate of snow, over that [–]. */
+const SNOW_AS_RAIN = 4
+
 /** Rates below cumulus and below the deck over that around the camera, which stands between their cores [–]. */
 const SHAFTS = [4, 2] as const
 /** Altitude above which snow falls in summer [m]. */
@@ -177,7 +180,8 @@ export class WeatherBlend {
     layers.at(0).set({ baseAltitude: base, topAltitude: base + tall })
     layers.at(1).set(foggy > 0 ? fogForm : deckForm)
     const covers = [cumulus, Math.abs(foggy), cirrus]
-    const freezingLevel = snow > 0 ? 0 : FREEZING
+    // Snow falls to the ground, rain melts high up; from one to the other the level goes with what falls.
+    const freezingLevel = snow > 0 ? (FREEZING * rain) / (rain + SNOW_AS_RAIN * snow) : FREEZING
     for (const [i, coverage] of covers.entries()) {
       const rate = hasClouds && falls ? rates[i] : 0
       const precipitation = rate > 0 ? { rate, share: 0.8, freezingLevel } : null
