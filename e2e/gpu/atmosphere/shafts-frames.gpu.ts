@@ -142,6 +142,8 @@ gpuTest("reads the cascades of three's SunLight as it reads one map", async t =>
   const renderer = await t.createRenderer(size)
   SunLight.registerNode(SunLightNode)
   const set = stage(renderer, 15)
+  // As fine as cascades: edges of coarser texels are elsewhere.
+  set.light.shadow.mapSize.setScalar(2048)
   const tower = addBox(set.scene, [-100, 200, -600], [150, 500, 60])
   // Not seen itself: its own front is where shadow maps of other texels differ.
   Object.assign(tower.material, { colorWrite: false, depthWrite: false })
@@ -171,7 +173,7 @@ gpuTest("reads the cascades of three's SunLight as it reads one map", async t =>
     `98 % of pixels differ by less than ${errors.toFixed(4)}, by shadows ${shadows.toFixed(4)}`
   )
   expectTrue(shadows > 0.02, 'the tower casts a shadow')
-  expectTrue(errors < 0.1 * shadows, 'cascades')
+  expectTrue(errors < 0.03 * shadows, 'cascades')
   dispose()
   light.dispose()
   set.dispose()

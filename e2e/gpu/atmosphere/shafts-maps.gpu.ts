@@ -41,6 +41,8 @@ gpuTest("reads three's cascades as it reads one map", async t => {
   const pictures: Picture[] = []
   for (const kind of ['map', 'cascades', 'lit']) {
     const { scene, light, draw, shafts, dispose } = stage(renderer, 15)
+    // As fine as cascades: edges of coarser texels are elsewhere.
+    light.shadow.mapSize.setScalar(2048)
     const tower = addBox(scene, [-100, 200, -600], [150, 500, 60])
     // Not seen itself: its own front is where shadow maps of other texels differ.
     Object.assign(tower.material, { colorWrite: false, depthWrite: false })
@@ -62,7 +64,7 @@ gpuTest("reads three's cascades as it reads one map", async t => {
     `98 % of pixels differ by less than ${errors.toFixed(4)}, by shadows ${shadows.toFixed(4)}`
   )
   expectTrue(shadows > 0.02, 'the tower casts a shadow')
-  expectTrue(errors < 0.1 * shadows, 'cascades')
+  expectTrue(errors < 0.03 * shadows, 'cascades')
 })
 
 // WebGPU loads depths, whatever they are; WebGL compares with those that are made for that.

@@ -25,7 +25,7 @@ export const qualities = {
   },
   medium: {
     rows: 960,
-    columns: 200,
+    columns: 240,
     spacing: 7,
     groups: 3,
     samples: 3,
