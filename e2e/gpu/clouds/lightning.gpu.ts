@@ -193,45 +193,48 @@ gpuTest('a storm is struck where its columns are strong, at the same place for t
   })
 )
 
-gpuTest('light of a flash passes clouds of other layers as slabs of their depth', t =>
-  inFog(t, async ({ renderer, atmosphere }, shared) => {
-    const [base, top] = [500, 4500]
-    const layers = new CloudLayers([
-      { ...fog, topAltitude: 1500 },
-      { ...fog, baseAltitude: 2500, topAltitude: top }
-    ])
-    const view = new CloudView(renderer, atmosphere, layers, shared)
-    view.camera.position.set(0, 2000, 0)
-    await view.draw(2)
-    const { space, parameters } = atmosphere
-    const viewpoint = space.position(view.camera.position, new Vector3())
-    const up = viewpoint.clone().normalize()
-    const east = new Vector3(0, 0, 1).cross(up).normalize()
-    const axes = [east, up.clone().cross(east), up] as const
-    const place = up.clone().multiplyScalar(parameters.bottomRadius).sub(viewpoint)
-    const storm = new StormDensity(view.node.field)
-    const stem = Array.from({ length: 5 }, (): Point => [0, 0, 1000])
-    storm.bake(renderer, place, { axes, stem, place, pieces: [], brightLength: 1 }, { base, top })
-    const altitudes = [1300, 2000, 3000, 4000]
-    const found = await evaluateOnGpu(
-      renderer,
-      altitudes.map(altitude => up.clone().multiplyScalar(altitude).add(place).toArray()),
-      input => vec4(storm.lightOut(input.xyz), 0, 0)
-    )
-    const depths = await depthsUpwards(view, 0, [base, top])
-    const depthTo = (altitude: number): number =>
-      depths[Math.round(((altitude - base) / (top - base)) * HEIGHTS)]
-    const [own, between, near, far] = altitudes.map((_, i) => found[4 * i])
-    const others = altitudes.map((_, i) => found[4 * i + 1])
-    expectClose(others, [0, 1, 1, 1], { absolute: 0.05 }, 'out of another cloud')
-    // Within a cloud, by the depth from the flash.
-    const out = (altitude: number): number => 1 / (depthTo(altitude) - depthTo(1000) + OPEN)
-    expectClose([own / between], [out(1300) / out(1500)], { relative: 0.08 }, 'own cloud')
-    const passed = (altitude: number): number => OPEN / (depthTo(altitude) - depthTo(2500) + OPEN)
-    t.note(`${(near / between).toFixed(3)} and ${(far / between).toFixed(3)} pass`)
-    expectClose([near / between], [passed(3000)], { relative: 0.08 }, 'into the next cloud')
-    expectClose([far / between], [passed(4000)], { relative: 0.08 }, 'through the next cloud')
-    storm.dispose()
-    view.dispose()
-  })
+gpuTest(
+  'light of a flash passes clouds of other layers as slabs of their depth',
+  t =>
+    inFog(t, async ({ renderer, atmosphere }, shared) => {
+      const [base, top] = [500, 4500]
+      const layers = new CloudLayers([
+        { ...fog, topAltitude: 1500 },
+        { ...fog, baseAltitude: 2500, topAltitude: top }
+      ])
+      const view = new CloudView(renderer, atmosphere, layers, shared)
+      view.camera.position.set(0, 2000, 0)
+      await view.draw(2)
+      const { space, parameters } = atmosphere
+      const viewpoint = space.position(view.camera.position, new Vector3())
+      const up = viewpoint.clone().normalize()
+      const east = new Vector3(0, 0, 1).cross(up).normalize()
+      const axes = [east, up.clone().cross(east), up] as const
+      const place = up.clone().multiplyScalar(parameters.bottomRadius).sub(viewpoint)
+      const storm = new StormDensity(view.node.field)
+      const stem = Array.from({ length: 5 }, (): Point => [0, 0, 1000])
+      storm.bake(renderer, place, { axes, stem, place, pieces: [], brightLength: 1 }, { base, top })
+      const altitudes = [1300, 2000, 3000, 4000]
+      const found = await evaluateOnGpu(
+        renderer,
+        altitudes.map(altitude => up.clone().multiplyScalar(altitude).add(place).toArray()),
+        input => vec4(storm.lightOut(input.xyz), 0, 0)
+      )
+      const depths = await depthsUpwards(view, 0, [base, top])
+      const depthTo = (altitude: number): number =>
+        depths[Math.round(((altitude - base) / (top - base)) * HEIGHTS)]
+      const [own, between, near, far] = altitudes.map((_, i) => found[4 * i])
+      const others = altitudes.map((_, i) => found[4 * i + 1])
+      expectClose(others, [0, 1, 1, 1], { absolute: 0.05 }, 'out of another cloud')
+      // Within a cloud, by the depth from the flash.
+      const out = (altitude: number): number => 1 / (depthTo(altitude) - depthTo(1000) + OPEN)
+      expectClose([own / between], [out(1300) / out(1500)], { relative: 0.08 }, 'own cloud')
+      const passed = (altitude: number): number => OPEN / (depthTo(altitude) - depthTo(2500) + OPEN)
+      t.note(`${(near / between).toFixed(3)} and ${(far / between).toFixed(3)} pass`)
+      expectClose([near / between], [passed(3000)], { relative: 0.08 }, 'into the next cloud')
+      expectClose([far / between], [passed(4000)], { relative: 0.08 }, 'through the next cloud')
+      storm.dispose()
+      view.dispose()
+    }),
+  { backends: ['webgpu'] }
 )
