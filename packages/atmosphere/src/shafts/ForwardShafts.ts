@@ -32,19 +32,8 @@ import { distanceOf, withoutLost } from './tsl/without'
  * `await renderer.compileAsync(scene, camera)`.
  */
 export class ForwardShafts extends LightShafts {
-  readonly #volume: ShaftVolume
+  readonly #volume = new ShaftVolume(this.camera)
   readonly #shadowedSky = this.shadowedIn(() => this.media.filter(({ leavesSky }) => !leavesSky))
-
-  /** @throws As {@link LightShafts} does. */
-  constructor(
-    atmosphere: Atmosphere,
-    camera: Camera,
-    light: ParallelLight,
-    options: LightShaftsOptions = {}
-  ) {
-    super(atmosphere, camera, light, options)
-    this.#volume = new ShaftVolume(camera)
-  }
 
   /** Fineness of the march. A change compiles nothing, but materials to and from `'reference'`, at which each fragment marches. */
   override get quality(): LightShaftsQuality {
@@ -130,12 +119,7 @@ export class ForwardShafts extends LightShafts {
         return taken.mul(to.distance ? this.#volume.lostTo(to.distance) : this.#volume.lostToSky())
       }
       const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
-      const ray = {
-        direction,
-        cosView,
-        cosViewLight,
-        distance: distanceOf(to)
-      }
+      const ray = { direction, cosView, cosViewLight, distance: distanceOf(to) }
       const pixel = screenCoordinate.xy.floor()
       return taken.mul(lostLight(lit, this.shadowedAir, ray, this.steps, staggered(pixel)))
     })

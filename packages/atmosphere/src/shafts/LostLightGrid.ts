@@ -32,7 +32,7 @@ const APART_DEPTH = 6e4
 /** Octaves that none is beyond but means marked as apart. */
 const STEEP_LIMIT = 1100
 
-/** Octaves of the light of even air by which pixels differ that weigh half as much as those that have the same. Greater: halos at silhouettes. */
+/** Octaves of the light of clear air by which pixels differ that weigh half as much as those that have the same. Greater: halos at silhouettes. */
 const SIMILAR = 0.02
 
 /** Octaves of depth by which pixels differ at least that much, however alike their light is. Smaller: ground at the horizon has the sky's. */
@@ -60,7 +60,7 @@ const LEAST_THINNING = 1e-9
 /** Height over which the thinning of the air is found [m]. */
 export const THIN_HEIGHT = 1000
 
-/** Least part of the light of even air that is seen. */
+/** Least part of the light of clear air that is seen. */
 const MIN_PART = 1e-7
 
 /** Greatest light that is mixed [octaves]. */
@@ -83,7 +83,7 @@ function partsOf({ lost, lit }: LostLight): Vec3 {
   return taken.div(whole).clamp(-MAX_KEPT, 1)
 }
 
-/** Part of the light of even air that is seen, of what lies beyond. */
+/** Part of the light of clear air that is seen, of what lies beyond. */
 const shownOf = (beyond: Float): Float => beyond.oneMinus().max(MIN_PART)
 
 /** First or last in each direction, of four by their number. */
@@ -96,7 +96,7 @@ function cornerOf(index: Int): Vec2 {
 export interface SeenAir {
   /** Distance to what was drawn [m]. */
   readonly distance: Float
-  /** Part of the light of even air without end that lies beyond what is seen: see {@link LostLightGrid.beyond}. */
+  /** Part of the light of clear air without end that lies beyond what is seen: see {@link LostLightGrid.beyond}. */
   readonly beyond: Float
   /** log₂ of the distance beyond which that part lies [m]. */
   readonly depth: Float

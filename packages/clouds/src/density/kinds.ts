@@ -21,3 +21,6 @@ export function hasStorms({ kinds }: CloudField, index?: number): boolean | unde
   if (index !== undefined) return kinds[index] === 's'
   return kinds.includes('c') && kinds.includes('s') ? undefined : kinds[0] === 's'
 }
+
+/** True if some layer is known to be one of storms. */
+export const knowsStorms = ({ kinds }: CloudField): boolean => kinds?.includes('s') === true

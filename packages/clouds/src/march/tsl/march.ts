@@ -1,6 +1,6 @@
 import { Break, If, float, int, vec4 } from 'three/tsl'
 import { loop, type Bool, type Float, type Int, type Variable, type Vec3 } from '../../tsl-types'
-import { hasStorms } from '../../density/kinds'
+import { hasStorms, knowsStorms } from '../../density/kinds'
 import { samplePair, type ClearLayers } from '../../density/tsl/samplePair'
 import type { CloudSample } from '../../density/tsl/sample'
 import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
@@ -73,8 +73,7 @@ export function marchClouds(
   }
   const seen = seenState()
   const state = stepState(jitter, hasStorms(field) !== false)
-  const isStormy = field.kinds?.includes('s')
-  const stepGrowth = quality.stepGrowth.mul(isStormy ? STORM_GROWTH : 1) as Float
+  const stepGrowth = quality.stepGrowth.mul(knowsStorms(field) ? STORM_GROWTH : 1) as Float
   const segment = segmentState()
   const clear = vec4(0).toVar() as ClearLayers
   /** Pairs of samples so far, of all segments. */
