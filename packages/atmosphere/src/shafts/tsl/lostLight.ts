@@ -24,8 +24,9 @@ export interface ShaftSteps {
   readonly inFog: Float
 }
 
-/** Places at which diffuse light is evaluated, over groups: it changes slowly, and four pixels share theirs. */
+/** Places at which diffuse light is evaluated, over groups, and the fewest: it changes slowly, and two pixels that touch share theirs. Fewer: stripes along silhouettes under clouds (*cirrus* under a low sun). */
 const DIFFUSE_PART = 0.5
+const LEAST_DIFFUSE = 2
 
 /** Stretch of a ray that is marched in groups of samples, whatever its length. */
 interface Stretch {
@@ -121,13 +122,13 @@ export function lostLight(
     marchStretch('near', part(float(0), near, samples, true))
     marchStretch('far', part(near, near.oneMinus().toConst(), samples.sub(1), false))
     if (missingAt === null) return
-    const places = int(groups.mul(DIFFUSE_PART).max(1))
+    const places = int(groups.mul(DIFFUSE_PART).max(LEAST_DIFFUSE))
     const diffuse = {
       steps,
       at: airAt,
       cosViewLight,
       samples: places,
-      jitter,
+      jitter: jitter.lessThan(0.5).select(0.25, 0.75) as Float,
       missingAt: (inAir: Float) => past(missingAt(fromEye(inAir)), fromEye(inAir))
     }
     lost.addAssign(lostDiffuse(air, diffuse))
@@ -180,7 +181,8 @@ function lostInGroup(
 }
 
 /**
- * Place of a pixel's samples in their steps: 1/8, 5/8, 7/8 or 3/8, of which any four pixels that touch have all.
+ * Place of a pixel's samples in their steps: 1/8, 5/8, 7/8 or 3/8, of which any four pixels that touch have all, and any two
+ * side by side or one above the other have one of the first half and one of the second.
  */
 export const staggered = (pixel: Vec2): Float =>
   pixel.mod(2).dot(vec2(0.5, 0.75)).add(0.125).fract().toConst()
