@@ -322,8 +322,9 @@ export class LostLightGrid {
         const other = sampleLevel0(this.#texels, at).toConst()
         const light = log2(shownAt(other.w).div(known))
         const apart = other.w.sub(own).abs().min(DISTINCT).max(light.abs()).toConst()
-        const near = apart.mul(apart).add(even).toConst()
-        const weight = near.mul(near).reciprocal().toConst()
+        const near = apart.mul(apart).add(even).reciprocal().toConst()
+        // Else what is beside clouds, whose depths are rough, has a part of those that are far from its own.
+        const weight = tolerance ? tolerance.greaterThan(0).select(near.mul(near), near) : near
         sums.addAssign(other.mul(weight))
         weights.addAssign(weight)
       })
