@@ -4,7 +4,7 @@ import type { FrameInputs } from '../../march/tsl/viewRay'
 import { LEAST_OPACITY, passesCellDepthTest, type Cell } from './cells'
 import { passesDepthTest } from './depthTest'
 import { SAMPLE_STEPS } from './packing'
-import { brightness, type CloudTargets } from './renderTargets'
+import { brightness, CLEAR, type CloudTargets } from './renderTargets'
 import type { Neighbourhood } from './varianceClip'
 
 /**
@@ -22,6 +22,12 @@ const WEIGHT_SHARPNESS = 5
 /** Least weight: that of pixels with no marched one near by. */
 const LEAST_WEIGHT = 1 / SAMPLE_STEPS
 
+/**
+ * Weight above which an estimate is a pixel's own sample rather than its neighbours'. Smaller: still clouds
+ * blur (*Cumulus*).
+ */
+const OWN_SAMPLE = 0.5
+
 /** Square of a distance beyond any corner [marched pixels²]. */
 const NO_CORNER = 100
 
@@ -31,10 +37,12 @@ const UNKNOWN = 100
 /** Estimate of a pixel from this frame's marched pixels alone. */
 export interface Estimate extends Neighbourhood {
   readonly light: Vec4
-  /** log₂ of the clouds' distance. */
+  /** log₂ of the clouds' distance: the mean of the cell, but that of a marched pixel there. */
   readonly distance: Float
   /** Samples that it is worth, in (0, 1]: 1 at a marched pixel. */
   readonly weight: Float
+  /** True at a marched pixel. */
+  readonly isOwn: Bool
 }
 
 /** Position of a pixel among marched ones. */
@@ -159,7 +167,13 @@ export function estimate(
   }).Else(() => {
     gatherCorners(gathered, viewRays, marched, corner, kernel, end)
   })
-  const weight = nearest.mul(frame.block).mul(frame.block).mul(-WEIGHT_SHARPNESS).exp()
+  const weight = nearest.mul(frame.block).mul(frame.block).mul(-WEIGHT_SHARPNESS).exp().toConst()
+  const isOwn = weight.greaterThan(OWN_SAMPLE).toConst() as Bool
+  // At edges of near clouds before far ones the cell's mean is the distance of neither.
+  If(isOwn.and(isWhole).and(light.w.lessThan(CLEAR)), () => {
+    const own = marched.distances.sample(at(corner.add(kernel.blend.round()))).level(0)
+    distance.assign(own.x)
+  })
   return {
     light,
     mean: () => {
@@ -170,6 +184,7 @@ export function estimate(
     },
     statistics,
     distance,
-    weight: weight.max(LEAST_WEIGHT).toConst()
+    weight: weight.max(LEAST_WEIGHT).toConst(),
+    isOwn
   }
 }

@@ -1,5 +1,5 @@
 import { If, exp2, vec2, vec4 } from 'three/tsl'
-import type { Float, Mat3, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import type { Bool, Float, Mat3, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import type { PixelRay, FrameInputs } from '../../march/tsl/viewRay'
 import { passesDepthTest, SAME_DISTANCE } from './depthTest'
 import { clampDistance, unpack } from './packing'
@@ -31,8 +31,9 @@ export interface ReprojectedHistory {
   readonly light: Vec4
   /** Accumulated samples that it is worth; 0 where it is rejected. */
   readonly samples: Float
-  /** log₂ of the distance of its clouds. */
+  /** log₂ of the distance of its clouds, if it has any. */
   readonly distance: Float
+  readonly hasClouds: Bool
   /** Stationarity: 1 where neither clouds nor what was drawn have moved, falling to 0 at a pixel's motion. */
   readonly stationarity: Float
 }
@@ -87,6 +88,7 @@ export function reprojectHistory(
   const isSameEnd = clampedEnd.sub(apart.y).abs().lessThan(SAME_DISTANCE)
   return {
     distance: apart.x,
+    hasClouds: apart.z.greaterThan(0),
     light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
     stationarity: isSameEnd.select(speed.oneMinus().max(0), 0),
     samples: apart.z

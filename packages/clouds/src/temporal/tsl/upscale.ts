@@ -1,6 +1,6 @@
 import { If, float, mix, smoothstep, uv, vec4 } from 'three/tsl'
 import { outputs, type Outputs } from '@welkin/atmosphere'
-import type { Float, Vec2, Vec4 } from '../../tsl-types'
+import type { Bool, Float, Vec2, Vec4 } from '../../tsl-types'
 import { viewRayAt, viewRayEnd, type FrameInputs } from '../../march/tsl/viewRay'
 import { isClear, type Cell } from './cells'
 import { toHalf } from './ditheredHalf'
@@ -10,12 +10,6 @@ import { encodeDistance, FARTHEST, pack, unpack } from './packing'
 import { CLEAR, type CloudTargets } from './renderTargets'
 import { reprojectHistory, type ReprojectedHistory } from './reprojection'
 import { varianceClip } from './varianceClip'
-
-/**
- * Weight above which an estimate is a pixel's own sample rather than its neighbours'. Smaller: still clouds
- * blur (*Cumulus*).
- */
-const OWN_SAMPLE = 0.5
 
 /**
  * Extra clip tolerance of history, in units of brightness and of transmittance: of stationary pixels and of
@@ -36,6 +30,8 @@ const OLD_SAMPLES = 4
 interface Accumulated {
   readonly light: Vec4
   readonly samples: Float
+  /** log₂ of the distance of its clouds. */
+  readonly distance: Float
 }
 
 /**
@@ -44,7 +40,7 @@ interface Accumulated {
  * @see Yang et al. 2020, "A survey of temporal antialiasing techniques", §3.3
  */
 function accumulate(
-  { light, samples }: Accumulated,
+  { light, samples, distance }: Accumulated,
   { frame }: FrameInputs,
   now: Estimate,
   history: ReprojectedHistory
@@ -55,11 +51,15 @@ function accumulate(
       .max(LEAST_SLACK)
     const clipped = varianceClip(history.light, now, frame.clipDeviations, slack)
     // A pixel with a sample of its own learns nothing from its neighbours'.
-    const isOwn = now.weight.greaterThan(OWN_SAMPLE).or(history.samples.lessThan(1))
+    const isOwn = now.isOwn.or(history.samples.lessThan(1)).toConst() as Bool
     const weight = isOwn.select(now.weight, 0).toConst()
     const all = history.samples.add(weight).toConst()
     light.assign(mix(clipped, now.light, weight.div(all)))
     samples.assign(all.min(frame.maxSamples))
+    // Clouds that this frame does not see are where they were.
+    If(history.hasClouds.and(isOwn.not().or(now.light.w.greaterThan(CLEAR))), () => {
+      distance.assign(history.distance)
+    })
   })
 }
 
@@ -110,11 +110,7 @@ export function upscale(
       If(frame.hasHistory.greaterThan(0), () => {
         const origin = frame.originArray.element(cell.distances.w.toInt()).xyz
         const last = reprojectHistory(viewRays, history, pixel, ray, end, now.distance, origin)
-        accumulate({ light: result, samples }, viewRays, now, last)
-        // Clouds that this frame does not see are where they were.
-        If(now.light.w.greaterThan(CLEAR), () => {
-          distance.assign(last.distance)
-        })
+        accumulate({ light: result, samples, distance }, viewRays, now, last)
       })
       const signed = result.w.greaterThan(CLEAR).select(samples.negate(), samples)
       light.assign(toHalf(result.max(0), interleavedNoise(pixel, frame.noiseShift)))
