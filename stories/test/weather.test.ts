@@ -47,3 +47,26 @@ it('the level at which snow melts comes down while a shower turns to snow, witho
   expect(Math.min(...steps)).toBeGreaterThanOrEqual(0)
   expect(levels.at(-1)).toBe(0)
 })
+
+it.each([
+  ['fair', 'overcast'],
+  ['overcast', 'mist'],
+  ['mist', 'storm']
+] as const)('from %s to %s the march goes over to other steps bit by bit', (from, to) => {
+  const blend = new WeatherBlend(from)
+  const quality = (): typeof cloudQualities.medium => {
+    const now = blend.qualityOf('medium', true)
+    return typeof now === 'string' ? cloudQualities[now] : now
+  }
+  const before = quality()
+  blend.set(to, false)
+  const all = [before]
+  while (blend.update(0.05)) all.push(quality())
+  const leaps = (key: 'lightSteps' | 'depthStep' | 'layerSteps'): number =>
+    Math.max(...all.slice(1).map((each, i) => Math.abs(each[key] - all[i][key])))
+  expect(leaps('lightSteps')).toBeLessThanOrEqual(1)
+  expect(leaps('layerSteps')).toBeLessThanOrEqual(1)
+  expect(leaps('depthStep')).toBeLessThan(0.06)
+  expect(new WeatherBlend(to).qualityOf('medium', true)).toEqual(all.at(-1))
+  expect(all.at(-1)).not.toEqual(before)
+})

@@ -1,5 +1,8 @@
 import { cloudPreset, cloudQualities } from '@welkin/clouds'
+import { MathUtils } from 'three'
 import type { CloudLayers, CloudQuality, CloudQualityName } from '@welkin/clouds'
+
+const { clamp, lerp } = MathUtils
 
 /** A weather of the valley: numbers that all blend. */
 export interface Weather {
@@ -84,14 +87,21 @@ export const valleyLayers = [
   { ...cloudPreset('cirrus').at(0).parameters, coverage: 0, wind: { east: 26, north: -8 } }
 ]
 
-/**
- * Most steps to the light, least depth of a step, and part of the steps through a layer, in banks of fog: they are soft, and
- * have no bumps that shade each other.
- */
-const FOG_STEPS = { light: 1, depth: 1.5, layer: 0.6 }
+/** Most steps to the light, least depth of a step, and part of the steps through a layer. */
+interface Steps {
+  readonly light: number
+  readonly depth: number
+  readonly layer: number
+}
 
-/** Likewise in decks, and in what is below them. */
-const DECK_STEPS = { light: 2, depth: 0.6, layer: 1 }
+/** Steps in banks of fog: they are soft, and have no bumps that shade each other. */
+const FOG_STEPS: Steps = { light: 1, depth: 1.5, layer: 0.6 }
+
+/** Steps in decks, and in what is below them. */
+const DECK_STEPS: Steps = { light: 2, depth: 0.6, layer: 1 }
+
+/** Share of a deck, or of banks of fog, from which all of these hold: with less, the march goes over to them. */
+const WHOLE = 0.4
 
 /** Rate of rain that counts as much as a rate of snow, over that [–]. */
 const SNOW_AS_RAIN = 4
@@ -142,21 +152,24 @@ export class WeatherBlend {
     return (hasMist ? mist : 0) - deck
   }
 
-  /** Fineness of clouds in this weather, over that of others. */
+  /** Fineness of clouds in this weather, over that of others: it goes with decks and banks of fog as they come and go. */
   qualityOf(
     quality: CloudQualityName | CloudQuality,
     hasMist: boolean
   ): CloudQualityName | CloudQuality {
-    const isDeck = this.current.deck > 0
-    if (this.#fog(hasMist) <= 0 && !isDeck) return quality
-    const steps = isDeck ? DECK_STEPS : FOG_STEPS
+    const [fog, deck] = [this.#fog(hasMist), this.current.deck].map(t => clamp(t / WHOLE, 0, 1))
+    if (fog === 0 && deck === 0) return quality
     const fine = typeof quality === 'string' ? cloudQualities[quality] : quality
-    const lightSteps = Math.min(fine.lightSteps, steps.light)
+    const between = (own: number, inFog: number, underDeck: number): number =>
+      lerp(lerp(own, inFog, fog), underDeck, deck)
+    const least = ({ light }: Steps): number => Math.min(fine.lightSteps, light)
+    const most = ({ depth }: Steps): number => Math.max(fine.depthStep, depth)
+    const [ofFog, ofDeck] = [FOG_STEPS, DECK_STEPS]
     return {
       ...fine,
-      lightSteps,
-      depthStep: Math.max(fine.depthStep, steps.depth),
-      layerSteps: Math.round(fine.layerSteps * steps.layer)
+      lightSteps: Math.round(between(fine.lightSteps, least(ofFog), least(ofDeck))),
+      depthStep: between(fine.depthStep, most(ofFog), most(ofDeck)),
+      layerSteps: Math.round(fine.layerSteps * between(1, ofFog.layer, ofDeck.layer))
     }
   }
 
