@@ -18,18 +18,14 @@ const scenes = [
   )
 ].filter(file => !FLAT.has(file))
 
-/** Makers of an explorer on a scene's canvas, or of a handle that has one, and the files of those that are not three's or ours. */
-const MAKERS: Readonly<Record<string, string>> = {
-  'createLand(': 'globe/land.ts',
-  'new GroundCamera(': 'terrain/GroundCamera.ts'
-}
+/** Files in which scenes' explorers and handles are made for them. */
+const MAKERS = /from '\.\/(moon\.scene|globe\/land|terrain\/GroundCamera|terrain\/groundHandle)'/g
 
-/** Code of a scene, and of what it makes its explorer by. */
+/** Code of a scene, and of what makes its explorer and its handle. */
 function sourcesOf(file: string): string {
   const source = read(file)
-  const [, from] = /return create\w+\(|import \{ (create\w+) \} from/.exec('') ?? []
-  const makers = Object.keys(MAKERS).filter(maker => source.includes(maker))
-  return [source, ...makers.map(maker => read(MAKERS[maker])), from ?? ''].join('\n')
+  const makers = [...source.matchAll(MAKERS)].map(([, maker]) => read(`${maker}.ts`))
+  return [source, ...makers].join('\n')
 }
 
 it('has scenes for its stories', () => {
