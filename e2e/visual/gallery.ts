@@ -1,6 +1,7 @@
 import { existsSync, mkdirSync, readdirSync, writeFileSync } from 'node:fs'
 import { basename, join } from 'node:path'
 import { fileURLToPath } from 'node:url'
+import { parseArgs } from 'node:util'
 import { worldData } from '../../stories/vite/worldData.ts'
 import { filterSamplesPlugin } from '../gpu/filterSamples'
 import { launchChromium } from '../harness/browser'
@@ -21,10 +22,12 @@ const pictures = fileURLToPath(new URL('../../stories/pictures', import.meta.url
 const baselines = fileURLToPath(new URL('baselines', import.meta.url))
 
 /**
- * Draws pictures for the stories' gallery: those that have none, neither here nor among those of visual tests, or those whose
- * names have one of the words that are given.
+ * Draws pictures for the stories' gallery.
+ *
+ * @param words - Words of which names have one; left out, all are drawn.
+ * @param isAgain - True to draw those that there are, here or among those of visual tests, as well.
  */
-async function drawAll(words: readonly string[]): Promise<void> {
+async function drawAll(words: readonly string[], isAgain: boolean): Promise<void> {
   mkdirSync(pictures, { recursive: true })
   const files = Object.fromEntries(
     readdirSync(storiesFolder, { recursive: true, encoding: 'utf8' })
@@ -49,7 +52,8 @@ async function drawAll(words: readonly string[]): Promise<void> {
       const name = `${file}-${story}`.toLowerCase()
       const own = join(pictures, `${name}.jpg`)
       const isMissing = !existsSync(own) && !existsSync(join(baselines, `${name}.png`))
-      if (words.length > 0 ? !words.some(word => name.includes(word)) : !isMissing) continue
+      if (!isMissing && !isAgain) continue
+      if (words.length > 0 && !words.some(word => name.includes(word))) continue
       try {
         const shooting = page.evaluate(
           ([f, s]) => window.welkinVisual.shoot(f, s, 'webgpu', 'image/jpeg'),
@@ -75,4 +79,8 @@ async function drawAll(words: readonly string[]): Promise<void> {
   }
 }
 
-await drawAll(process.argv.slice(2))
+const { values, positionals } = parseArgs({
+  allowPositionals: true,
+  options: { again: { type: 'boolean', default: false } }
+})
+await drawAll(positionals, values.again)

@@ -18,6 +18,9 @@ type Snow = Node<'float'> | null
 
 const winterOf = (snow: Snow, isBare: boolean) => snow && { snow, isBare }
 
+/** Chance of a tree that stands alone. Greater: from afar meadows are dotted (*Valley, all day*). */
+const LONE = 0.0024
+
 /** Height of broad-leaved trees of size 1 [m]. */
 const HEIGHT = 9
 
@@ -35,7 +38,7 @@ export const createForest = (count: number, snow: Snow = null): Trees =>
   new Trees(
     [branchedSpruce(9, 6), spruce(5, 8), spruce(1, 4)],
     DISTANCES,
-    plant(count, 11, SUNK.wood, (x, z, height) => forestAt(x, z) + (height > 2 ? 0.004 : 0)),
+    plant(count, 11, SUNK.wood, (x, z, height) => forestAt(x, z) + (height > 2 ? LONE / 2 : 0)),
     1,
     winterOf(snow, false)
   )
@@ -48,7 +51,7 @@ export function createGrove(count: number, snow: Snow = null): Trees {
     const shore = height > 1.2 && height < 5 ? 0.35 : 0
     const village = fromVillage > 30 && fromVillage < 210 ? 0.22 : 0
     // Few stand alone.
-    const copse = smoothNoise(x / 45, z / 45) > 0.32 ? 0.16 : 0.006
+    const copse = smoothNoise(x / 45, z / 45) > 0.3 ? 0.2 : LONE
     return height > 1.2 && height < 45 ? shore + village + copse : 0
   })
   return new Trees(
@@ -66,7 +69,7 @@ export const createBirches = (count: number, snow: Snow = null): Trees =>
     [leafyTree('birch', 10), leafyTree('birch', 3), distantTree('birch', 2)],
     DISTANCES,
     plant(count, 37, SUNK.open, (x, z, height) => {
-      const copse = smoothNoise(x / 60 + 40, z / 60) > 0.36 ? 0.2 : 0.004
+      const copse = smoothNoise(x / 60 + 40, z / 60) > 0.36 ? 0.2 : LONE
       const shore = height > 1.2 && height < 4 ? 0.2 : 0
       return height > 1.2 && height < 120 ? shore + copse : 0
     }),
