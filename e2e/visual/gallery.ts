@@ -13,7 +13,7 @@ import { shadowSizePlugin } from '../harness/shadow-size'
 
 /** Size of a picture in the gallery, and of its file at most [bytes]. */
 const viewport = { width: 320, height: 180 }
-const LARGEST = 20_000
+const LARGEST = 12_000
 /** Longest that a picture may take [s]. */
 const limitSeconds = 300
 

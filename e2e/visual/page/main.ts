@@ -115,7 +115,7 @@ window.welkinVisual = {
     await view.ready
     view.render()
     // In the task of the drawing: later, a WebGPU canvas reads as blank.
-    const url = canvas.toDataURL(type, 0.8)
+    const url = canvas.toDataURL(type, 0.7)
     const milliseconds = performance.now() - start
     await new Promise(resolve => setTimeout(resolve, 20))
     await keepTables()
