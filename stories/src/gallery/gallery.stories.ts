@@ -22,7 +22,8 @@ const STYLE = `
 `
 
 const urlOf = (picture: string): string | undefined =>
-  pictures[`../../../e2e/visual/baselines/${picture}.png`] ?? pictures[`../../pictures/${picture}.jpg`]
+  pictures[`../../../e2e/visual/baselines/${picture}.png`] ??
+  pictures[`../../pictures/${picture}.jpg`]
 
 /** A story's picture, name and sentence, which lead to it. */
 function tile({ id, name, about, picture }: ListedStory): HTMLElement {

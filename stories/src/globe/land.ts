@@ -101,7 +101,11 @@ export async function createLand<Args extends RendererArgs>(
         pole: new Vector3(0, 0, 1),
         others: 'right drag turns about a place, Ctrl drags the globe and zooms'
       })
-  const endSharing = shareMouse(canvas, controls, () => isLoaded && !explorer?.isWalking && !explorer?.isFlying)
+  const endSharing = shareMouse(
+    canvas,
+    controls,
+    () => isLoaded && !explorer?.isWalking && !explorer?.isFlying
+  )
   const elapsed = frameClock(args.frame)
 
   const current = { ...args }

@@ -163,7 +163,7 @@ export class Explorer {
     const to = this.endOf(view.position, this.axes.rotation(angles, quaternion))
     await new Promise<void>(resolve => {
       this.flight = new Flight(from, to, seconds, resolve)
-      })
+    })
   }
 
   dispose(): void {

@@ -8,7 +8,19 @@ import {
   PlaneGeometry,
   Scene
 } from 'three'
-import { attribute, float, Fn, lights, normalWorldGeometry, positionWorld, texture, uniform, vec2, vec3, vec4 } from 'three/tsl'
+import {
+  attribute,
+  float,
+  Fn,
+  lights,
+  normalWorldGeometry,
+  positionWorld,
+  texture,
+  uniform,
+  vec2,
+  vec3,
+  vec4
+} from 'three/tsl'
 import { MeshLambertNodeMaterial, PhongLightingModel, RendererUtils } from 'three/webgpu'
 import type { Node, NodeBuilder, WebGPURenderer } from 'three/webgpu'
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js'

@@ -87,7 +87,8 @@ function hedgesNear(count: number): Tree[] {
       const z = VILLAGE.z + along
       const x = fieldBorder(border, z) + 1.5 * random()
       const isRow = smoothNoise(0.37 * border, z / 130) > 0.12
-      if (isRow && isField(x, z) && !isOnRoad(x, z, 3)) trees.push(treeAt(x, z, 0.62, random, SUNK.hedge))
+      if (isRow && isField(x, z) && !isOnRoad(x, z, 3))
+        trees.push(treeAt(x, z, 0.62, random, SUNK.hedge))
     }
   }
   return trees

@@ -140,7 +140,11 @@ function wallColor(
   color = mix(color, vec3(0.16, 0.09, 0.05), isDoor)
   // Streaks of rain, and splashes at the foot; trees and other houses take part of the sky's light there.
   const streaks = hash(along.mul(23).floor().add(house.mul(31)).add(400))
-  const aged = streaks.mul(y).mul(0.16).oneMinus().mul(smoothstep(-0.1, 0.45, y).mul(0.3).add(0.7))
+  const aged = streaks
+    .mul(y)
+    .mul(0.16)
+    .oneMinus()
+    .mul(smoothstep(-0.1, 0.45, y).mul(0.3).add(0.7))
   return color.mul(aged).mul(smoothstep(1.03, 0.86, y).mul(0.62).add(0.38))
 }
 
