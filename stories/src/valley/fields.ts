@@ -43,9 +43,9 @@ export function crops(
   const across = x
     .div(STRIP)
     .add(sin(z.div(300)).mul(0.3))
-    .add(noise.mul(STRAY))
     .toConst()
-  const strip = floor(across).toConst()
+  const strayed = across.add(noise.mul(STRAY)).toConst()
+  const strip = floor(strayed).toConst()
   const along = z.div(LENGTH).add(strip.mul(0.7)).toConst()
   const row = floor(along).toConst()
   const chance = fract(sin(strip.mul(127.1).add(row.mul(311.7))).mul(43.76)).toConst()
@@ -60,7 +60,7 @@ export function crops(
     .abs()
     .mul(LANE)
   const track = smoothstep(0.5, 0.2, aside.sub(0.9).abs()).mul(smoothstep(700, 250, distance))
-  const border = fract(across)
+  const border = fract(strayed)
     .sub(0.5)
     .abs()
     .max(
