@@ -49,7 +49,7 @@ export function createGrove(count: number, snow: Snow = null): Trees {
   const others = plant(count - hedges.length, 23, SUNK.open, (x, z, height) => {
     const fromVillage = Math.hypot(x - VILLAGE.x, z - VILLAGE.z)
     const shore = height > 1.2 && height < 5 ? 0.35 : 0
-    const village = fromVillage > 30 && fromVillage < 210 ? 0.22 : 0
+    const village = fromVillage > 30 && fromVillage < 210 ? 0.34 : 0
     // Few stand alone.
     const copse = smoothNoise(x / 45, z / 45) > 0.3 ? 0.2 : LONE
     return height > 1.2 && height < 45 ? shore + village + copse : 0
