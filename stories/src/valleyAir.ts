@@ -61,7 +61,7 @@ function withDepth(picture: Node, scenePass: PassNode): PictureNode {
 }
 
 /** Colour of a pass where it has drawn, elsewhere nothing: its texture need not be cleared, which would cost each pixel. */
-function drawnOf(scenePass: PassNode): Node<'vec4'> {
+export function drawnOf(scenePass: PassNode): Node<'vec4'> {
   const color = scenePass.getTextureNode() as unknown as Node<'vec4'>
   const { r } = scenePass.getTextureNode('depth') as unknown as Node<'vec4'>
   return isBackgroundDepth(r).select(vec4(0), color)
