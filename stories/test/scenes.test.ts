@@ -13,7 +13,7 @@ const scenes = [
   ...new Set(
     readdirSync(folder)
       .filter(file => file.endsWith('.stories.ts'))
-      .flatMap(file => [...read(file).matchAll(/from '\.\/(\w+\.scene)'/g)])
+      .flatMap(file => Array.from(read(file).matchAll(/from '\.\/(\w+\.scene)'/g)))
       .map(([, name]) => `${name}.ts`)
   )
 ].filter(file => !FLAT.has(file))
