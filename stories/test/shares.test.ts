@@ -35,6 +35,7 @@ it('gives each post effect a share of its own, and leaves a pass that it does no
     'Bloom [ High Pass ]': 'bloom',
     'Shown [ RTT ]': 'tone mapping',
     'Welkin.CloudFogLight': 'light of the mist',
+    SkyLightMap: 'light of the sky on the land',
     'Welkin.CloudsUpscale': 'clouds and mist',
     'Welkin.CloudsFall': 'rain and snow under clouds',
     'Welkin.CloudsFallSpread': 'rain and snow under clouds',
