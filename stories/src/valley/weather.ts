@@ -92,19 +92,18 @@ export const valleyLayers = [
   { ...cloudPreset('cirrus').at(0).parameters, coverage: 0, wind: { east: 26, north: -8 } }
 ]
 
-/** Most steps to the light, least depth of a step, part of the steps through a layer, and growth of steps with the distance over that of others. */
+/** Most steps to the light, least depth of a step, and part of the steps through a layer. */
 interface Steps {
   readonly light: number
   readonly depth: number
   readonly layer: number
-  readonly growth: number
 }
 
 /** Steps in banks of fog: they are soft, and have no bumps that shade each other. */
-const FOG_STEPS: Steps = { light: 1, depth: 1.5, layer: 0.6, growth: 2 }
+const FOG_STEPS: Steps = { light: 1, depth: 3, layer: 0.43 }
 
 /** Steps in decks, and in what is below them. */
-const DECK_STEPS: Steps = { light: 2, depth: 0.6, layer: 1, growth: 1 }
+const DECK_STEPS: Steps = { light: 2, depth: 0.6, layer: 1 }
 
 /** Height of cumulus from which it is a tower [m], and growth of steps in the tallest ones: much of what is in sight is cloud. */
 const TOWERS = [1200, 6000] as const
@@ -181,8 +180,7 @@ export class WeatherBlend {
       lightSteps: Math.round(between(fine.lightSteps, least(ofFog), least(ofDeck))),
       depthStep: between(fine.depthStep, most(ofFog), most(ofDeck)),
       layerSteps: Math.round(fine.layerSteps * between(1, ofFog.layer, ofDeck.layer)),
-      stepGrowth:
-        fine.stepGrowth * between(1, ofFog.growth, ofDeck.growth) * lerp(1, TOWER_GROWTH, tower)
+      stepGrowth: fine.stepGrowth * lerp(1, TOWER_GROWTH, tower)
     }
   }
 
