@@ -134,60 +134,6 @@ export async function testLink(browser: Browser, origin: string, report: Report)
   await page.fill('#control-dayLength', String(DAY_SECONDS))
   // The box itself is out of a pointer's reach.
   await page.$eval('#control-paused', control => (control as HTMLInputElement).click())
-  const late = Math.abs(shown.hour - wanted.hour)
-  report.check(late < 0.051, 'a link brings the hour back', `${shown.hour.toFixed(2)} h`)
-  report.check(
-    JSON.stringify(shown.weather) === JSON.stringify(wanted.weather),
-    'a link brings the weather back',
-    JSON.stringify(shown.weather)
-  )
-}
-
-/** Another quality goes to the scene that runs, which keeps view, hour and weather. */
-async function testQuality(page: Page, story: Frame, report: Report, wanted: Shown): Promise<void> {
-  await story.evaluate(() => Object.assign(window.welkinScene!, { isFirst: true }))
-  const runs = (): Promise<boolean> =>
-    story.evaluate(() => {
-      const { scene, isFirst } = window.welkinScene as SceneHandle<never> & { isFirst?: boolean }
-      const ground = scene.getObjectByName('Land')!.children[0]
-      return isFirst === true && ground.children.length === 25
-    })
-  await page.selectOption('#control-quality', 'medium')
-  const end = performance.now() + 60_000
-  while (!(await runs()) && performance.now() < end) {
-    await new Promise(resolve => setTimeout(resolve, 200))
-  }
-  report.check(await runs(), 'another quality goes to the scene that runs', 'tiles of the ground')
-  check(report, await look(story), wanted)
-}
-
-/** *Valley, all day* in Storybook: a link brings view, hour and weather back, and what is changed comes into the address. */
-export async function testLink(browser: Browser, origin: string, report: Report): Promise<void> {
-  const place = '150,90,-300,200,4,0'
-  const args = (hour: number, weather: WeatherName): string => `hour:${hour};weather:${weather}`
-  const first = `${origin}/?path=/story/${STORY}&args=${args(18.5, 'mist')};paused:!true;quality:low#view=${place}`
-  const [page, story] = await open(browser, first, report)
-  const wanted = { view: parseState(place)!, hour: 18.5, weather: weathers.mist }
-  check(report, await look(story), wanted)
-
-  await testQuality(page, story, report, wanted)
-  const missing = await page.$eval('#control-quality', control => {
-    const table = control.closest('table')!.getBoundingClientRect()
-    return Math.max(table.right - document.documentElement.clientWidth, 0)
-  })
-  report.check(missing === 0, 'the panel shows the whole of the controls', `${missing} px cut off`)
-  // By the controls, and by the scene, whose clock runs.
-  await page.selectOption('#control-weather', 'overcast')
-  await page.fill('#control-hour', '6.5')
-  const link = await addressWith(page, args(6.5, 'overcast'))
-  report.check(
-    new URL(link).hash === `#view=${place}`,
-    'the address has weather, hour and view',
-    link
-  )
-  await page.fill('#control-dayLength', String(DAY_SECONDS))
-  // The control follows the story's answer, later.
-  await page.click('#control-paused', { force: true })
   const late = await addressAfter(page, 6.5)
   const { hour } = await look(story)
   report.check(
