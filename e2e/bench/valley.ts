@@ -13,15 +13,18 @@ const LEAST_FRAMES = 120
 /** Time between two frames [s]. */
 const STEP = 1 / 60
 
-const PARTS: readonly (keyof ValleyState)[] = [
-  'clouds',
-  'shafts',
-  'mist',
-  'trees',
-  'village',
-  'water',
-  'bloom'
-]
+/** Parts that the opening picture has, and that take more than the times scatter. */
+const PARTS: readonly (keyof ValleyState)[] = ['clouds', 'shafts', 'trees', 'bloom']
+
+/** Speed at which the camera turns [rad/s], and frames after which it turns back where it turns to and fro. */
+const TURN = 0.25
+const FRO = 15
+
+/** Ways in which the camera turns: to and fro, so that it sees the same on the whole, or on and on. */
+type Turn = 'fro' | 'on'
+
+/** The sun is 1.5° down: its light and that of lamps, stars and moon are on together. */
+const DUSK = { hour: 19.8 } as const
 
 /** Everything that is on before bloom, depth of field and TRAA. */
 const FULL = { occlusion: true, motionBlur: true, bloom: false } as const
@@ -29,16 +32,19 @@ const FULL = { occlusion: true, motionBlur: true, bloom: false } as const
 /** The full moon stands high. */
 const WINTER = { date: Date.UTC(2026, 11, 24), hour: 22 } as const
 
-/** Weathers and hours with all that is on, what one of them costs as the story opens, and while the camera turns [rad/s]. */
-const ROWS: readonly (readonly [name: string, changes: Partial<ValleyState>, turn?: number])[] = [
+/** Weathers and hours with all that is on, what one of them costs as the story opens, and while the camera turns. */
+const ROWS: readonly (readonly [name: string, changes: Partial<ValleyState>, turn?: Turn])[] = [
   ['fair, as the story opens, without bloom', { bloom: false }],
   ['fair', FULL],
-  ['fair, while the camera turns', FULL, 0.25],
+  ['fair, while the camera turns to and fro', FULL, 'fro'],
+  ['fair, while the camera turns on', FULL, 'on'],
   ['broken', { ...FULL, weather: 'broken' }],
   ['overcast', { ...FULL, weather: 'overcast' }],
   ['mist', { ...FULL, weather: 'mist' }],
   ['shower', { ...FULL, weather: 'shower' }],
   ['snow', { ...FULL, weather: 'snow' }],
+  ['storm', { ...FULL, weather: 'storm' }],
+  ['dusk', { ...FULL, ...DUSK }],
   ['night', { ...FULL, ...WINTER }],
   ['night, snow', { ...FULL, ...WINTER, weather: 'snow' }]
 ]
@@ -82,18 +88,19 @@ export async function timeValley(
   const measure = async (
     changes: Partial<ValleyState>,
     frames: number,
-    turn = 0
+    turn?: Turn
   ): Promise<[PassTime[], number]> => {
     const state = { ...openingState, ...changes }
     valley.set(state, true)
     valley.cycle.hour = state.hour // the clock has gone on
+    valley.lookFrom('village')
     const passes: PassTime[] = []
     const cpu: number[] = []
     for (let frame = 0; frame < WARM_UP + frames; frame++) {
       nextFrame()
       valley.time = time += STEP
-      // To and fro, so that it sees the same on the whole.
-      valley.camera.rotateY(turn * STEP * (frame % 30 < 15 ? 1 : -1))
+      const isBack = turn === 'fro' && frame % (2 * FRO) >= FRO
+      if (turn !== undefined) valley.camera.rotateY(TURN * STEP * (isBack ? -1 : 1))
       renderer.setRenderTarget(target)
       const start = performance.now()
       valley.render(STEP)

@@ -23,6 +23,7 @@ import { Air } from './air'
 import { Explorer } from './moving/Explorer'
 import { createRenderer, disposeMeshes, drawSettled, EXPOSURE_FRAMES, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
+import { ShownHour } from './ShownHour'
 import { storyHandle } from './storyHandle'
 
 export interface DayArgs extends RendererArgs {
@@ -96,6 +97,7 @@ export async function createDay(
     shadow.normalBias = 0.03
   }
 
+  const shownHour = new ShownHour(current.hour)
   const apply = (before: DayArgs): void => {
     const { dayLength, daylight, paused, frame, latitude, season, hour } = current
     cycle.rate = 86_400 / dayLength
@@ -104,7 +106,7 @@ export async function createDay(
     cycle.latitude = latitude
     // The clock goes on from where these were set.
     if (season !== before.season) cycle.season = season
-    if (hour !== before.hour) cycle.hour = hour
+    if (shownHour.take(hour, before.hour)) cycle.hour = hour
   }
   atmosphere.place({ longitude: 0, latitude: current.latitude })
   cycle.time = Date.UTC(2026, 2, 21, 12)
@@ -121,9 +123,11 @@ export async function createDay(
     cycle.update(deltaSeconds) // moves sun, moon and stars, and exposure with them
     // #endregion
     air.render()
+    const hour = cycle.paused ? undefined : shownHour.next(cycle.hour)
+    if (hour !== undefined) handle.onArgs?.({ hour })
   }
 
-  return storyHandle({
+  const handle = storyHandle({
     renderer,
     scene,
     camera,
@@ -141,4 +145,5 @@ export async function createDay(
       disposeMeshes(meshes)
     }
   })
+  return handle
 }

@@ -7,19 +7,10 @@ import {
   SkyLightProbe,
   stars
 } from '@welkin/atmosphere'
-import {
-  cloudPreset,
-  cloudQualities,
-  clouds,
-  cloudShadow,
-  cloudSkyLight,
-  cloudWorldMap
-} from '@welkin/clouds'
-import { shadow } from 'three/tsl'
-import { cloudCover } from './clouds/cloudCover'
 import { createCity } from './globe/city'
 import { GlobeNight, type NightFeatures } from './globe/GlobeNight'
 import { createLand, type Land } from './globe/land'
+import { worldClouds } from './globe/worldClouds'
 import { PLACES } from './globe/places'
 import type { PlaceName } from './globe/places'
 import { applyTime } from './scene'
@@ -33,28 +24,6 @@ export interface GlobeArgs extends RendererArgs, TimeArgs, NightFeatures {
 
 /** The city is smaller than a pixel from higher up [m]. */
 const CITY_CEILING = 60_000
-
-/** The world's clouds over the land, which has its air as a post effect. */
-async function worldClouds(): Promise<(land: Land) => { dispose(): void }> {
-  const cover = await cloudCover()
-  return ({ camera, air: { atmosphere, post, sun, sky } }) => {
-    if (post === undefined) throw new Error('worldClouds: there must be a post effect')
-    const { color, depth, pipeline } = post
-    const worldMap = cloudWorldMap(cover)
-    const layers = cloudPreset('mixed')
-    const quality = cloudQualities.medium
-    const node = clouds(color, depth, camera, atmosphere, layers, { quality, worldMap })
-    pipeline.outputNode = node
-    Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
-    cloudSkyLight(sky, node)
-    return {
-      dispose() {
-        node.dispose()
-        cover.dispose()
-      }
-    }
-  }
-}
 
 /** The Earth from a street to 20,000 km: pictures of all of it and terrain of one valley, in tiles, in a world that is ECEF, in metres. */
 export async function createGlobe(
@@ -71,7 +40,8 @@ export async function createGlobe(
     // #endregion
     const city = createCity(noise)
     scene.add(city.object)
-    const night = new GlobeNight(atmosphere, () => {
+    const weather = addClouds?.(land)
+    const nightfall = () => {
       // #region globe night
       const luna = moon()
       const nightSky = [milkyWay(), stars(), luna, airglow()] as const // far before near
@@ -81,9 +51,11 @@ export async function createGlobe(
       const dark = new NightLightProbe(atmosphere)
       scene.add(moonlight, moonlight.target, moonlitSky, dark)
       // #endregion
-      return { sky: nightSky, lights: [moonlight, moonlitSky, dark] }
-    })
-    const weather = addClouds?.(land)
+      const lights = [moonlight, moonlitSky, dark] as const
+      weather?.shade(lights)
+      return { sky: nightSky, lights }
+    }
+    const night = new GlobeNight(atmosphere, nightfall, weather?.cover)
     return {
       place: ({ place }: GlobeArgs) => PLACES[place],
       prepare: () => atmosphere.bake(renderer),

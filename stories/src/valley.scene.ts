@@ -3,6 +3,7 @@ import { STILL_QUALITY } from './clouds/still'
 import { Explorer } from './moving/Explorer'
 import { createRenderer, drawSettled, fitToCanvas, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
+import { ShownHour } from './ShownHour'
 import { HourArc } from './valley/HourArc'
 import { Readout } from './valley/readout'
 import { Valley, type ValleyState } from './valley/Valley'
@@ -20,9 +21,6 @@ const STILL = { quality: STILL_QUALITY, frames: 2 }
 
 /** Time of the clouds' drift at the start, and in a still [s]. */
 const STILL_TIME = 100
-
-/** Time between two showings of the hour in the controls, and so in the address [s]. */
-const SHOW_HOUR = 3
 
 const stateOf = (args: ValleyArgs): ValleyState => ({
   ...args,
@@ -59,16 +57,10 @@ export async function createValley(
 
   const elapsed = frameClock(args.frame)
   let time = STILL_TIME
-  /** Hour that the controls were last given, and the time since that or a change by hand [s]. */
-  let shownHour = current.hour
-  let hourByHand = current.hour
-  let sinceShown = 0
-  const showHour = (delta: number): void => {
-    sinceShown += delta
-    if (current.paused || sinceShown < SHOW_HOUR) return
-    sinceShown = 0
-    shownHour = Math.floor(10 * valley.cycle.hour) / 10
-    handle.onArgs?.({ hour: shownHour })
+  const shownHour = new ShownHour(current.hour)
+  const showHour = (): void => {
+    const hour = current.paused ? undefined : shownHour.next(valley.cycle.hour)
+    if (hour !== undefined) handle.onArgs?.({ hour })
   }
   const draw = (): void => {
     const start = performance.now()
@@ -76,7 +68,7 @@ export async function createValley(
     explorer?.update(delta)
     valley.time = time += delta
     valley.render(delta)
-    showHour(delta)
+    showHour()
     const spent = performance.now() - start
     const ground = valley.groundAt(camera.position)
     arc?.update(valley.cycle.hour, current.latitude, valley.cycle.season)
@@ -107,12 +99,10 @@ export async function createValley(
     update(changes) {
       const { view, hour } = current
       Object.assign(current, changes)
-      const isSet = current.hour !== hour && current.hour !== shownHour
-      if (isSet) hourByHand = current.hour
+      const isSet = shownHour.take(current.hour, hour)
       // The clock is ahead of an hour that the scene has shown of itself.
-      valley.set({ ...stateOf(current), hour: hourByHand }, current.frame)
+      valley.set({ ...stateOf(current), hour: shownHour.byHand }, current.frame)
       if (isSet) valley.cycle.hour = current.hour
-      if (isSet || current.hour === hour) sinceShown = 0
       if (current.view !== view) goTo(current.view, 4)
       warmUp()
     },

@@ -23,7 +23,7 @@ import { cloudAirShadow, clouds, cloudShadow, cloudSkyLight } from '@welkin/clou
 import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
 import type { PerspectiveCamera, Scene } from 'three'
 import type { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
-import { BasicShadowFilter, pass, shadow, vec4 } from 'three/tsl'
+import { BasicShadowFilter, isBackgroundDepth, pass, shadow, vec4 } from 'three/tsl'
 import type { Node, PassNode, TextureNode } from 'three/webgpu'
 import { Cascades } from './valley/Cascades'
 import { SKY_DEPTH } from './valley/LakeMirror'
@@ -58,6 +58,13 @@ export interface ValleyAir {
 function withDepth(picture: Node, scenePass: PassNode): PictureNode {
   const depth = scenePass.getViewZNode().negate().min(SKY_DEPTH)
   return new PictureNode('Picture', vec4((picture as Node<'vec4'>).rgb, depth))
+}
+
+/** Colour of a pass where it has drawn, elsewhere nothing: its texture need not be cleared, which would cost each pixel. */
+export function drawnOf(scenePass: PassNode): Node<'vec4'> {
+  const color = scenePass.getTextureNode() as unknown as Node<'vec4'>
+  const { r } = scenePass.getTextureNode('depth') as unknown as Node<'vec4'>
+  return isBackgroundDepth(r).select(vec4(0), color)
 }
 
 /** All of the sky by day and night, with clouds that cast shadows on the ground and in the air. */
@@ -101,7 +108,9 @@ export function valleyAir(
   const scenePass = pass(scene, camera, { samples: 0 })
   const depth = scenePass.getTextureNode('depth')
   const shafts = lightShafts(atmosphere, camera, sun)
-  const air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere, { shafts })
+  // #shown const color = scenePass.getTextureNode()
+  const color = drawnOf(scenePass) // #hidden
+  const air = aerialPerspective(color, depth, camera, atmosphere, { shafts })
   // #shown const precipitation = precipitationShafts() // rain and snow under clouds
   const precipitation = falling.shafts // #hidden
   // #shown const node = clouds(air, depth, camera, atmosphere, layers, { precipitation })

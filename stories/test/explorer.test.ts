@@ -150,19 +150,18 @@ describe('looking', () => {
     expect(Math.abs(tilt())).toBeLessThan(0.1)
   })
 
-  it('leaves drags to others until it walks', () => {
-    const { explorer, pointer, run } = explore({ drags: 'walking' })
-    const drag = (): void => {
-      pointer('pointerdown', 'mouse', 1, 100, 100)
-      pointer('pointermove', 'mouse', 1, 150, 100)
-      pointer('pointerup', 'mouse', 1, 150, 100)
+  it('leaves other buttons, and button and wheel with Ctrl, to other controls', () => {
+    const { explorer, drag, roll, run } = explore()
+    const heading = (options: object): number => {
+      drag(50, options)
       run(0.1)
+      return explorer.state.heading
     }
-    drag()
-    expect(explorer.state.heading).toBe(0)
-    explorer.isWalking = true
-    drag()
-    expect(explorer.state.heading).toBeCloseTo(9)
+    expect(heading({ button: 2 })).toBe(0)
+    expect(heading({ ctrlKey: true })).toBe(0)
+    expect(heading({})).toBeCloseTo(9)
+    expect(roll({ ctrlKey: true }).defaultPrevented).toBe(false)
+    expect(roll({}).defaultPrevented).toBe(true)
   })
 })
 

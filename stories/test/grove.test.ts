@@ -25,12 +25,17 @@ describe('trees about the village', () => {
     grove.dispose()
   })
 
-  it('are as many as were asked for, on the ground, none of them on the road', () => {
+  it('are as many as were asked for, none of them on the road, and their trunks of many lengths', () => {
     expect(places).toHaveLength(COUNT)
+    const depths: number[] = []
     for (const { x, y, z } of places) {
-      expect(y - groundHeight(x, z)).toBeCloseTo(-0.2, 3)
       expect(isOnRoad(x, z)).toBe(false)
+      depths.push(groundHeight(x, z) - y)
     }
+    // Crowns begin 2.3 m above the foot of a tree 9 m high; the largest are some 19 m.
+    expect(Math.min(...depths)).toBeGreaterThan(0.2)
+    expect(Math.max(...depths)).toBeLessThan(4.8)
+    expect(depths.filter(depth => depth > 1).length).toBeGreaterThan(0.3 * COUNT)
   })
 
   it('stand in the village and in rows between fields', () => {

@@ -13,7 +13,7 @@ it('adds up the passes of a feature, the longest first', () => {
   ] as const
   expect(sharesOf(passes, none)).toEqual([
     ['land, trees, village and lake, lit', 2],
-    ['clouds, rain and snow under them', 1.5],
+    ['clouds and mist', 1.5],
     ['tone mapping', 0.2]
   ])
 })
@@ -35,6 +35,10 @@ it('gives each post effect a share of its own, and leaves a pass that it does no
     'Bloom [ High Pass ]': 'bloom',
     'Shown [ RTT ]': 'tone mapping',
     'Welkin.CloudFogLight': 'light of the mist',
+    SkyLightMap: 'light of the sky on the land',
+    'Welkin.CloudsUpscale': 'clouds and mist',
+    'Welkin.CloudsFall': 'rain and snow under clouds',
+    'Welkin.CloudsFallSpread': 'rain and snow under clouds',
     'Welkin.Precipitation.0': 'rain and snow around the camera',
     'Welkin.PrecipitationSkylight.0': 'light of rain and snow',
     Else: 'Else'
@@ -58,7 +62,7 @@ it('says how long frames take, by feature, or that the browser keeps no times on
     ['output', 3],
     ['Welkin.CloudsMarch', 1]
   ] as const
-  const shares = 'land, trees, village and lake, lit 1.50\nclouds, rain and snow under them 0.50'
+  const shares = 'land, trees, village and lake, lit 1.50\nclouds and mist 0.50'
   expect(gpuText(passes, 2, 9, none)).toBe(` · GPU 2.0 ms\n${shares}`)
   expect(gpuText([], 0, 1, none)).toBe('')
   expect(gpuText([], 0, 9, none)).toContain('no GPU times')

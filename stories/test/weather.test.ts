@@ -1,5 +1,6 @@
 import { CloudLayers, cloudQualities } from '@welkin/clouds'
 import { expect, it } from 'vitest'
+import { groundHeight } from '../src/valley/ground'
 import { valleyLayers, WeatherBlend } from '../src/valley/weather'
 
 const qualityIn = (name: 'fair' | 'mist' | 'overcast'): (typeof cloudQualities)['medium'] => {
@@ -10,12 +11,12 @@ const qualityIn = (name: 'fair' | 'mist' | 'overcast'): (typeof cloudQualities)[
 it('banks of fog take fewer steps than clouds, decks as many through their layer', () => {
   const { medium } = cloudQualities
   expect(qualityIn('fair')).toEqual(medium)
-  expect(qualityIn('mist').layerSteps).toBeLessThan(0.7 * medium.layerSteps)
+  expect(qualityIn('mist').layerSteps).toBeLessThan(0.5 * medium.layerSteps)
   expect(qualityIn('mist').layerSteps).toBeGreaterThan(4)
   expect(qualityIn('overcast').layerSteps).toBe(medium.layerSteps)
 })
 
-it('cumulus is higher where there is no deck over it, and comes down while one comes', () => {
+it('cumulus comes down while a low deck comes over it', () => {
   const blend = new WeatherBlend('fair')
   const layers = new CloudLayers(valleyLayers)
   const base = (): number => {
@@ -23,13 +24,13 @@ it('cumulus is higher where there is no deck over it, and comes down while one c
     return layers.at(0).parameters.baseAltitude
   }
   const [fair, deck] = [base(), layers.at(1).parameters.baseAltitude]
-  blend.set('broken', false)
+  blend.set('overcast', false)
   blend.update(5)
   const between = base()
   blend.update(10)
-  const broken = base()
+  const low = base()
   expect(fair).toBeGreaterThan(between)
-  expect(between).toBeGreaterThan(broken)
+  expect(between).toBeGreaterThan(low)
   expect(layers.at(0).parameters.topAltitude).toBeLessThanOrEqual(deck)
 })
 
@@ -46,4 +47,42 @@ it('the level at which snow melts comes down while a shower turns to snow, witho
   expect(Math.max(...steps)).toBeLessThan(100)
   expect(Math.min(...steps)).toBeGreaterThanOrEqual(0)
   expect(levels.at(-1)).toBe(0)
+})
+
+it.each([
+  ['fair', 'overcast'],
+  ['overcast', 'mist'],
+  ['mist', 'storm']
+] as const)('from %s to %s the march goes over to other steps bit by bit', (from, to) => {
+  const blend = new WeatherBlend(from)
+  const quality = (): typeof cloudQualities.medium => {
+    const now = blend.qualityOf('medium', true)
+    return typeof now === 'string' ? cloudQualities[now] : now
+  }
+  const before = quality()
+  blend.set(to, false)
+  const all = [before]
+  while (blend.update(0.05)) all.push(quality())
+  const leaps = (key: 'lightSteps' | 'depthStep' | 'layerSteps'): number =>
+    Math.max(...all.slice(1).map((each, i) => Math.abs(each[key] - all[i][key])))
+  expect(leaps('lightSteps')).toBeLessThanOrEqual(1)
+  expect(leaps('layerSteps')).toBeLessThanOrEqual(1)
+  expect(leaps('depthStep')).toBeLessThan(0.1)
+  expect(new WeatherBlend(to).qualityOf('medium', true)).toEqual(all.at(-1))
+  expect(all.at(-1)).not.toEqual(before)
+})
+
+it('clouds of a broken sky are over most of the mountains, and cumulus below the deck', () => {
+  const layers = new CloudLayers(valleyLayers)
+  new WeatherBlend('broken').apply(layers, true, true, true, true)
+  const [cumulus, deck] = [0, 1].map(i => layers.at(i).parameters)
+  let [above, all] = [0, 0]
+  for (let x = -9000; x <= 9000; x += 450) {
+    for (let z = -12_000; z <= 6000; z += 450) {
+      all++
+      if (600 + groundHeight(x, z) > cumulus.baseAltitude) above++
+    }
+  }
+  expect(above / all).toBeLessThan(0.25)
+  expect(cumulus.topAltitude).toBeLessThanOrEqual(deck.baseAltitude)
 })

@@ -24,7 +24,7 @@ interface Story {
 }
 
 export interface Shot {
-  /** The frame as a PNG data URL. */
+  /** The frame as a data URL. */
   url: string
   messages: string[]
   milliseconds: number
@@ -33,7 +33,10 @@ export interface Shot {
 export interface VisualPage {
   /** Stories with the tag `screenshot`, per file; those with `webgpu-only` are not taken on WebGL. */
   list: () => Promise<{ file: string; story: string; isWebGPUOnly: boolean }[]>
-  shoot: (file: string, story: string, backend: Backend) => Promise<Shot>
+  /** All stories that are of a scene. */
+  listAll: () => Promise<{ file: string; story: string }[]>
+  /** @param type - Type of the picture; default PNG. */
+  shoot: (file: string, story: string, backend: Backend, type?: string) => Promise<Shot>
 }
 
 declare global {
@@ -78,7 +81,18 @@ window.welkinVisual = {
     return found
   },
 
-  async shoot(file, story, backend) {
+  async listAll() {
+    const files = Object.keys(modules).filter(key => key.endsWith('.stories'))
+    const names = files.map(key => key.replace('.stories', ''))
+    const ofScenes = names.filter(file => `${file}.scene` in modules)
+    const found = ofScenes.map(async file => {
+      const { default: _meta, ...stories } = await load(`${file}.stories`)
+      return Object.keys(stories).map(story => ({ file, story }))
+    })
+    return (await Promise.all(found)).flat()
+  },
+
+  async shoot(file, story, backend, type = 'image/png') {
     await loadNoise()
     const create = await findCreate(file)
     setShadowSize('pictures')
@@ -101,7 +115,7 @@ window.welkinVisual = {
     await view.ready
     view.render()
     // In the task of the drawing: later, a WebGPU canvas reads as blank.
-    const url = canvas.toDataURL('image/png')
+    const url = canvas.toDataURL(type, 0.7)
     const milliseconds = performance.now() - start
     await new Promise(resolve => setTimeout(resolve, 20))
     await keepTables()

@@ -1,17 +1,16 @@
 import type { Meta, StoryObj } from '@storybook/html-vite'
-import { listStories, withPictures, type GalleryEntry } from './listStories'
+import { listStories, type ListedStory } from './listStories'
 
-/** Sources of the stories, and the pictures that tests compare them with. */
+/** Sources of the stories, pictures that tests compare them with, and those that `npm run gallery` draws of the others. */
 const sources = import.meta.glob<string>('../*.stories.ts', {
   query: '?raw',
   import: 'default',
   eager: true
 })
-const pictures = import.meta.glob<string>('../../../e2e/visual/baselines/*.png', {
-  query: '?url',
-  import: 'default',
-  eager: true
-})
+const pictures = import.meta.glob<string>(
+  ['../../../e2e/visual/baselines/*.png', '../../pictures/*.jpg'],
+  { query: '?url', import: 'default', eager: true }
+)
 
 const STYLE = `
   .gallery { min-height: 100vh; padding: 24px; background: #05070a; color: #e8edf2; font: 13px/1.4 system-ui, sans-serif }
@@ -20,34 +19,25 @@ const STYLE = `
   .gallery a { color: inherit; text-decoration: none }
   .gallery img { display: block; width: 100%; aspect-ratio: 16 / 9; object-fit: cover; border-radius: 6px }
   .gallery b { display: block; margin-top: 4px }
-  .gallery figure { position: relative; margin: 0 }
-  .gallery figcaption { position: absolute; left: 6px; bottom: 6px; padding: 1px 6px; border-radius: 4px;
-    background: rgb(5 7 10 / 70%); font-size: 12px }
 `
 
 const urlOf = (picture: string): string | undefined =>
-  pictures[`../../../e2e/visual/baselines/${picture}.png`]
+  pictures[`../../../e2e/visual/baselines/${picture}.png`] ??
+  pictures[`../../pictures/${picture}.jpg`]
 
-/** A story's picture, name and sentence, which lead to it; the picture of another story says so. */
-function tile({ id, name, about, picture, pictureOf }: GalleryEntry): HTMLElement {
+/** A story's picture, name and sentence, which lead to it. */
+function tile({ id, name, about, picture }: ListedStory): HTMLElement {
   const link = document.createElement('a')
   link.href = `?path=/story/${id}`
   // The page around the story's own.
   link.target = '_top'
   const image = document.createElement('img')
-  Object.assign(image, { src: urlOf(picture), alt: pictureOf ?? name, loading: 'lazy' })
-  const figure = document.createElement('figure')
-  figure.append(image)
-  if (pictureOf !== undefined) {
-    const caption = document.createElement('figcaption')
-    caption.textContent = `Picture of “${pictureOf}”`
-    figure.append(caption)
-  }
+  Object.assign(image, { src: urlOf(picture), alt: name, loading: 'lazy' })
   const title = document.createElement('b')
   title.textContent = name
   const text = document.createElement('span')
   text.textContent = about
-  link.append(figure, title, text)
+  link.append(image, title, text)
   return link
 }
 
@@ -60,7 +50,7 @@ function gallery(): HTMLElement {
   page.append(style)
   for (const [file, source] of Object.entries(sources)) {
     const { title, stories } = listStories(file, source)
-    const shown = withPictures(stories, picture => urlOf(picture) !== undefined).map(tile)
+    const shown = stories.filter(({ picture }) => urlOf(picture) !== undefined).map(tile)
     if (shown.length === 0) continue
     const heading = document.createElement('h2')
     heading.textContent = title

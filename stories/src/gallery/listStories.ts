@@ -5,10 +5,8 @@ export interface ListedStory {
   name: string
   /** Sentence over it in the code. */
   about: string
-  /** Name of its picture among those of visual tests. */
+  /** Name of its picture, among those of visual tests or in `stories/pictures`. */
   picture: string
-  /** Words of its name in addresses, and its arguments that are names, as `planet: 'mars'`. */
-  traits: readonly string[]
 }
 
 /** Words of a name in capitals and small letters. */
@@ -40,35 +38,7 @@ export function listStories(
     id: `${dashed(title)}--${dashed(words(key))}`,
     name: /\bname: (['"])(.*?)\1/.exec(body)?.[2] ?? words(key),
     about: about.replaceAll(/\s*\n\s*\*?\s*/g, ' ').trim(),
-    picture: `${base}-${key}`.toLowerCase(),
-    traits: [...dashed(words(key)).split('-'), ...(body.match(/\b(?!name)\w+: '[^']*'/g) ?? [])]
+    picture: `${base}-${key}`.toLowerCase()
   }))
   return { title, stories }
-}
-
-/** A story in the gallery. */
-export interface GalleryEntry extends ListedStory {
-  /** Name of the story that the picture is of, if that is another one; its picture is in `picture`. */
-  pictureOf?: string
-}
-
-/**
- * Stories of a file, each with its picture, or that of the one with which it has most in common, of equals the first. There are
- * none if none has a picture.
- *
- * @param has - True for the names of pictures that there are.
- */
-export function withPictures(
-  stories: readonly ListedStory[],
-  has: (picture: string) => boolean
-): GalleryEntry[] {
-  return stories.flatMap(story => {
-    if (has(story.picture)) return [story]
-    const rank = ({ traits }: ListedStory): number =>
-      story.traits.filter(trait => traits.includes(trait)).length
-    const [best] = stories
-      .filter(({ picture }) => has(picture))
-      .toSorted((a, b) => rank(b) - rank(a))
-    return best === undefined ? [] : [{ ...story, picture: best.picture, pictureOf: best.name }]
-  })
 }

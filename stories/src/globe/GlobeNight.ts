@@ -1,8 +1,18 @@
 import { exposureFor } from '@welkin/atmosphere'
-import type { Airglow, Atmosphere, MilkyWay, Moon, Stars } from '@welkin/atmosphere'
+import type {
+  Airglow,
+  Atmosphere,
+  CloudedSky,
+  MilkyWay,
+  Moon,
+  MoonDirectionalLight,
+  NightLightProbe,
+  SkyLightProbe,
+  Stars
+} from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import { MathUtils, PerspectiveCamera } from 'three'
-import type { Camera, Light } from 'three'
+import type { Camera } from 'three'
 
 /** Illuminance of a street, and of what is seen from {@link HIGH} [lx]: pictures are exposed for no less. */
 const FLOOR = { street: 2, orbit: 0.01 }
@@ -24,7 +34,7 @@ export interface NightFeatures {
 /** Night sky and its lights. */
 export interface Night {
   readonly sky: readonly [MilkyWay, Stars, Moon, Airglow]
-  readonly lights: readonly Light[]
+  readonly lights: readonly [MoonDirectionalLight, SkyLightProbe, NightLightProbe]
 }
 
 /** Night over a globe, which is made when it first falls, and exposure for it. */
@@ -33,10 +43,14 @@ export class GlobeNight {
   #features: NightFeatures = { stars: true, moon: true, airglow: true }
   readonly #below = new PerspectiveCamera()
 
-  /** @param nightfall - Adds what a night has. */
+  /**
+   * @param nightfall - Adds what a night has.
+   * @param clouds - Clouds that dim the land's light; null for none.
+   */
   constructor(
     private readonly atmosphere: Atmosphere,
-    private readonly nightfall: () => Night
+    private readonly nightfall: () => Night,
+    private readonly clouds: CloudedSky | null = null
   ) {}
 
   /** Switches parts of the night sky on and off; nothing is compiled. */
@@ -51,7 +65,7 @@ export class GlobeNight {
 
   /** Exposes for the land below a camera. */
   update(camera: Camera): void {
-    const { atmosphere } = this
+    const { atmosphere, clouds } = this
     const { longitude, latitude, height } = Ellipsoid.WGS84.ecefToGeodetic(camera.position)
     const below = { longitude, latitude, height: Math.min(height, EXPOSED_HEIGHT) }
     Ellipsoid.WGS84.geodeticToECEF(below, this.#below.position)
@@ -59,7 +73,7 @@ export class GlobeNight {
     const part = Math.log(Math.max(height, 100) / 100) / Math.log(HIGH / 100)
     const [low, high] = [Math.log(FLOOR.street), Math.log(FLOOR.orbit)]
     const floor = Math.exp(MathUtils.lerp(low, high, Math.min(part, 1)))
-    const exposure = exposureFor(atmosphere, this.#below, { floor }) / 2 ** DARKER
+    const exposure = exposureFor(atmosphere, this.#below, { floor, clouds }) / 2 ** DARKER
     atmosphere.luminanceScale = 1e-4 * Math.max(exposure, 1)
     if (exposure <= 1 || this.#night !== undefined) return
     this.#night = this.nightfall()

@@ -15,6 +15,7 @@ import { groundHeight } from './groundHeight'
 import { loadTiles, tilesProgress } from './loadTiles'
 import { flyToPlace, moveCamera } from './places'
 import type { Place } from './places'
+import { shareMouse } from './shareMouse'
 import { aimShadow, prepareShadow } from './sunShadow'
 import { createTerrain } from './terrain'
 
@@ -98,8 +99,13 @@ export async function createLand<Args extends RendererArgs>(
         upAt: (position, target) => Ellipsoid.WGS84.surfaceNormal(position, target),
         heightAt: position => Ellipsoid.WGS84.heightAt(position),
         pole: new Vector3(0, 0, 1),
-        drags: 'walking'
+        others: 'right drag turns about a place, Ctrl drags the globe and zooms'
       })
+  const endSharing = shareMouse(
+    canvas,
+    controls,
+    () => isLoaded && !explorer?.isWalking && !explorer?.isFlying
+  )
   const elapsed = frameClock(args.frame)
 
   const current = { ...args }
@@ -173,7 +179,7 @@ export async function createLand<Args extends RendererArgs>(
     render() {
       if (explorer !== undefined) {
         explorer.update(elapsed())
-        controls.enabled = isLoaded && !explorer.isWalking && !explorer.isFlying
+        controls.enabled &&= isLoaded && !explorer.isWalking && !explorer.isFlying
         controls.update()
       }
       draw()
@@ -194,6 +200,7 @@ export async function createLand<Args extends RendererArgs>(
     },
     dispose() {
       disposed = true
+      endSharing()
       explorer?.dispose()
       controls.dispose()
       story.dispose?.()

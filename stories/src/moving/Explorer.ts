@@ -43,8 +43,8 @@ const LEVEL = new Quaternion()
  * jumps. One finger looks, two move. The camera has no parent but the scene; others may move it between updates.
  */
 export class Explorer {
-  /** Times at which drags look. */
-  readonly drags: 'always' | 'walking'
+  /** Line on how else the camera is moved, by other controls; undefined if it is not. */
+  readonly others: string | undefined
 
   private readonly camera: PerspectiveCamera
   private readonly input: ExplorerInput
@@ -70,9 +70,8 @@ export class Explorer {
     this.metersPerUnit = options.metersPerUnit ?? 1
     this.heightAt = options.heightAt ?? (position => position.y * this.metersPerUnit)
     this.pole = options.pole ?? new Vector3(0, 0, -1)
-    this.drags = options.drags ?? 'always'
+    this.others = options.others
     this.walker = options.walker
-    this.shareDrags()
   }
 
   /** True on the way of {@link flyTo}. */
@@ -89,7 +88,6 @@ export class Explorer {
       this.stop()
       this.walk = value ? new Walk() : undefined
     }
-    this.shareDrags()
   }
 
   /** Position [m], direction and way of moving, of which a link is made. Set, it ends a flight. */
@@ -165,7 +163,6 @@ export class Explorer {
     const to = this.endOf(view.position, this.axes.rotation(angles, quaternion))
     await new Promise<void>(resolve => {
       this.flight = new Flight(from, to, seconds, resolve)
-      this.shareDrags()
     })
   }
 
@@ -178,11 +175,6 @@ export class Explorer {
     this.velocity.set(0, 0, 0)
     this.flight?.end()
     this.flight = undefined
-    this.shareDrags()
-  }
-
-  private shareDrags(): void {
-    this.input.isLooking = this.drags === 'always' || this.isWalking || this.isFlying
   }
 
   private endOf(position: Vector3, rotation: Quaternion) {

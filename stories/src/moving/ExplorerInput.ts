@@ -23,6 +23,10 @@ export const TYPED =
   'textarea, select, [contenteditable], input:not([type=range], [type=checkbox], [type=radio], [type=button], [type=color])'
 const PRESSED = 'button, summary, a, input'
 
+/** True for the mouse's other buttons, and for button and wheel with Ctrl: these are left to other controls. */
+export const isOthers = (event: PointerEvent | WheelEvent): boolean =>
+  event.ctrlKey || ('pointerType' in event && event.pointerType === 'mouse' && event.button !== 0)
+
 interface Finger {
   readonly start: Vector2
   readonly at: Vector2
@@ -30,8 +34,6 @@ interface Finger {
 
 /** Keys, mouse, wheel and fingers of an {@link Explorer}, as wishes to move. */
 export class ExplorerInput {
-  /** True while drags and the wheel are taken; others may have them otherwise. */
-  isLooking = true
   /** Factor of speed that the wheel sets. */
   speed = 1
 
@@ -142,9 +144,10 @@ export class ExplorerInput {
     this.hold(code, repeat)
   }
 
-  private touch({ pointerId, pointerType, button, clientX, clientY }: PointerEvent): void {
+  private touch(event: PointerEvent): void {
+    const { pointerId, clientX, clientY } = event
     this.isUsed = true
-    if (!this.isLooking || (pointerType === 'mouse' && button !== 0)) return
+    if (isOthers(event)) return
     this.canvas.setPointerCapture(pointerId)
     const start = new Vector2(clientX, clientY)
     this.fingers.set(pointerId, { start, at: start.clone() })
@@ -166,7 +169,7 @@ export class ExplorerInput {
 
   private roll(event: WheelEvent): void {
     this.isUsed = true
-    if (!this.isLooking) return
+    if (isOthers(event)) return
     event.preventDefault()
     // Firefox may count in lines.
     const way = event.deltaY * (event.deltaMode === 1 ? 33 : 1)

@@ -13,8 +13,8 @@ export interface ExplorerOptions {
   metersPerUnit?: number
   /** Direction that north leans to, unit vector. Default −Z. */
   pole?: Vector3
-  /** Times at which drags look: 'walking' leaves them to other controls otherwise. Default 'always'. */
-  drags?: 'always' | 'walking'
+  /** Line on how else the camera is moved, by other controls; for the help. */
+  others?: string
   /** Someone on foot who knows slopes and water of the ground, and walks from near it on. */
   walker?: Walker
 }

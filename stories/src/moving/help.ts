@@ -10,13 +10,10 @@ const HIDDEN = '?'
 const KEYS = 'WASD, Q, E fly · Shift is faster · F walks, Space jumps'
 
 /** Line that says how one moves. */
-export function helpFor({ drags }: Explorer, isTouched: boolean): string {
-  if (drags === 'walking') {
-    return isTouched ? 'Fingers turn the globe' : `Drag and wheel move the globe · ${KEYS}`
-  }
-  return isTouched
-    ? 'One finger looks, two move, buttons rise, walk and jump'
-    : `Drag looks · ${KEYS} · wheel sets the speed`
+export function helpFor({ others }: Explorer, isTouched: boolean): string {
+  if (isTouched) return 'One finger looks, two move, buttons rise, walk and jump'
+  const aside = others === undefined ? '' : ` · ${others}`
+  return `Drag looks · ${KEYS} · wheel sets the speed${aside}`
 }
 
 /**

@@ -3,11 +3,16 @@ import { Matrix4, Vector2 } from 'three'
 import type { PerspectiveCamera } from 'three'
 import { ao } from 'three/addons/tsl/display/GTAONode.js'
 import {
+  float,
   Fn,
+  If,
+  mix,
   perspectiveDepthToViewZ,
+  positionView,
   positionWorld,
   reference,
   renderGroup,
+  smoothstep,
   texture,
   uniform,
   uv,
@@ -29,6 +34,9 @@ const SETTLING = 2 * EVERY
 
 /** Pixels along a side over those of the picture. */
 const COARSE = 0.5
+
+/** Distances from which occlusion fades, and at which it has: its reach is a few pixels there [m]. */
+const SEEN = [700, 1000] as const
 
 /** Difference of distances, over the distance, from which a place was hidden in the last frame. */
 const HIDDEN = 0.03
@@ -101,13 +109,22 @@ export class LastOcclusion {
     this.#toScreen.value.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
   }
 
-  /** Share of the sky's light that comes to a fragment. */
+  /** Share of the sky's light that comes to a fragment; all of it farther away than corners are seen. */
   sample(): Node<'float'> {
     return Fn(() => {
-      const clip = (this.#toScreen as unknown as Node<'mat4'>).mul(vec4(positionWorld, 1)).toConst()
-      const before = (texture(this.#target.texture, screenPlace(clip)) as unknown as Vec4).toConst()
-      const wasSeen = before.y.sub(clip.w).abs().lessThan(clip.w.mul(HIDDEN))
-      return wasSeen.select(before.x, 1)
+      const share = float(1).toVar()
+      const distance = positionView.z.negate()
+      If(distance.lessThan(SEEN[1]), () => {
+        const toScreen = this.#toScreen as unknown as Node<'mat4'>
+        const clip = toScreen.mul(vec4(positionWorld, 1)).toConst()
+        const place = screenPlace(clip)
+        const before = texture(this.#target.texture, place).level(float(0)).toConst() as Vec4
+        const wasSeen = before.y.sub(clip.w).abs().lessThan(clip.w.mul(HIDDEN))
+        If(wasSeen, () => {
+          share.assign(mix(before.x, float(1), smoothstep(SEEN[0], SEEN[1], distance)))
+        })
+      })
+      return share
     })()
   }
 

@@ -26,6 +26,9 @@ const STEEP = 0.6
 const SNOWED = 0.7
 const SNOWED_BARE = 0.3
 
+/** Cosines of the slopes of a crown of needles between which snow comes to lie: its branches hold it where a roof would not. */
+const NEEDLED = [-0.15, 0.6] as const
+
 const _place = new Vector3()
 const _direction = new Vector3()
 
@@ -62,6 +65,7 @@ export class Trees extends Group {
     const far = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
     if (fallen !== null) setFarFoliage(far, fallen)
     near.snowNode = far.snowNode = winter && winter.snow.mul(isBare ? SNOWED_BARE : SNOWED)
+    if (!isBare) near.lying = far.lying = NEEDLED
     this.levels = geometries.map((geometry, level) => {
       const mesh = new InstancedMesh(geometry, level < leafy ? near : far, trees.length)
       mesh.setColorAt(0, new Color())

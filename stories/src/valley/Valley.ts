@@ -32,7 +32,9 @@ import { Land } from './Land'
 import { MoonShadow } from './MoonShadow'
 import { StreetLamps } from './StreetLamps'
 import { StepClock } from './StepClock'
-import { setLit } from './VertexLitMaterial'
+import { setLit } from './litLights'
+import { SkyLightMap } from './SkyLightMap'
+import { setMapped } from './VertexLitMaterial'
 import { createVillage, doors } from './village'
 import { VIEWS, type ValleyName } from './views'
 import { valleyFlashes } from './flashes'
@@ -125,6 +127,7 @@ export class Valley {
   readonly #cascadeTurns: CascadeTurns
   readonly #moonShadow: MoonShadow
   readonly #moonlights
+  readonly #skyMap: SkyLightMap
   readonly #daySky
   readonly #nightSky
   readonly #sun
@@ -146,6 +149,9 @@ export class Valley {
     this.#cascadeTurns = new CascadeTurns(air.cascades)
     this.#daySky = air.daySky
     this.#nightSky = air.nightSky[1]
+    const probes = [air.daySky, ...air.nightSky]
+    this.#skyMap = new SkyLightMap(probes, (x, z) => this.groundAt({ x, z }))
+    setMapped(probes, this.#skyMap)
     const [sun, moonlight] = air.directLights
     this.#sun = sun
     this.#moonShadow = new MoonShadow(moonlight)
@@ -237,6 +243,7 @@ export class Valley {
     const keys = ['trees', 'village', 'water', 'quality'] as const
     if (keys.some(key => this.#state[key] !== before[key])) this.#redrawShadows()
     this.#applyWeather(atOnce)
+    this.#skyMap.reset()
     this.#finish.set(this.#state)
   }
 
@@ -302,6 +309,7 @@ export class Valley {
     setLit(this.#daySky, elevation > TWILIGHT)
     setLit(this.#nightSky, isNight)
     setLit(this.#sun, elevation > SUNLIGHT)
+    this.#skyMap.update(this.#renderer, this.camera, luminanceScale)
     this.#village.light(share, luminanceScale)
     this.#mirror.scaleTo(luminanceScale)
     const { autoClear } = this.#renderer
@@ -327,6 +335,7 @@ export class Valley {
 
   dispose(): void {
     for (const dispose of this.#dispose) dispose()
+    this.#skyMap.dispose()
     this.#land.dispose()
     this.#village.dispose()
     this.#water.dispose()

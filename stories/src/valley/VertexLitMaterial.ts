@@ -7,13 +7,21 @@ import {
   mix,
   normalWorldGeometry,
   smoothstep,
-  uniform,
   varying,
   vec3,
   vec4
 } from 'three/tsl'
 import { MeshLambertNodeMaterial, PhongLightingModel } from 'three/webgpu'
-import type { LightingModelDirectInput, Node, NodeBuilder, UniformNode } from 'three/webgpu'
+import type { LightingModelDirectInput, Node, NodeBuilder } from 'three/webgpu'
+import {
+  type LightsBuilder,
+  litOf,
+  received,
+  type ReceivedLight,
+  type ShadowedLightNode,
+  sumOfLit
+} from './litLights'
+import type { SkyLightMap } from './SkyLightMap'
 
 type Vec3 = Node<'vec3'>
 
@@ -21,35 +29,12 @@ type Vec3 = Node<'vec3'>
 const SNOW = [0.78, 0.8, 0.83] as const
 const LYING = [0.12, 0.7] as const
 
-/** Parts of three's light nodes and contexts of which its types have none. */
-interface ShadowedLightNode {
-  light: Light & { isDirectionalLight?: true }
-  baseColorNode: Vec3 | null
-  shadowNode: Node | null
-}
-interface LightsBuilder {
-  context: {
-    irradiance: { addAssign(node: Vec3): void }
-    reflectedLight: { directDiffuse: { assign(node: Vec3): void } }
-  }
-  lightsNode: {
-    getLightNodes(builder: unknown): ShadowedLightNode[]
-    setupLights(builder: unknown, nodes: ShadowedLightNode[]): void
-  }
-}
+/** Maps that have the light of a light. */
+const _mapped = new WeakMap<Light, SkyLightMap>()
 
-/** 1 for lights that are computed. */
-const _lit = new WeakMap<Light, UniformNode<'float', number>>()
-
-function litOf(light: Light): UniformNode<'float', number> {
-  let lit = _lit.get(light)
-  if (lit === undefined) _lit.set(light, (lit = uniform(1)))
-  return lit
-}
-
-/** Turns a light on or off for {@link VertexLitMaterial}, at no cost where it is off; nothing is compiled. */
-export function setLit(light: Light, isLit: boolean): void {
-  litOf(light).value = isLit ? 1 : 0
+/** Has the light of some lights read from a map, of which there is one for all of them. Before the first frame. */
+export function setMapped(lights: readonly Light[], map: SkyLightMap): void {
+  for (const light of lights) _mapped.set(light, map)
 }
 
 /** Shadows of clouds without those that they are multiplied with. */
@@ -63,19 +48,9 @@ function ofCloudsAlone(shadow: CloudShadowNode): CloudShadowNode {
   return alone
 }
 
-/** Sum of the colours of lights at the vertices; a light that is off is left out. */
-const atVertices = (colors: readonly (readonly [light: Light, color: Vec3])[]): Vec3 =>
-  varying(
-    Fn(() => {
-      const result = vec3(0).toVar()
-      for (const [light, color] of colors) {
-        If(litOf(light).greaterThan(0), () => {
-          result.addAssign(color)
-        })
-      }
-      return result
-    })()
-  )
+/** Sum of the colours of lights, and of a map of others, at the vertices; a light that is off is left out. */
+const atVertices = (colors: readonly ReceivedLight[], map?: SkyLightMap): Vec3 =>
+  varying(Fn(() => (map === undefined ? sumOfLit(colors) : sumOfLit(colors).add(map.sample())))())
 
 /** Lambert's model whose light from all sides, and colours of directional lights, are of the vertices. */
 class VertexLightingModel extends PhongLightingModel {
@@ -86,17 +61,14 @@ class VertexLightingModel extends PhongLightingModel {
   override start(builder: NodeBuilder): void {
     const lit = builder as unknown as LightsBuilder
     const { context, lightsNode } = lit
-    const { irradiance } = context
     // Before branches: three would begin the sum anew in each.
     context.reflectedLight.directDiffuse.assign(vec3(0))
-    const received: [Light, Vec3][] = []
-    for (const node of lightsNode.getLightNodes(lit)) {
-      context.irradiance = { addAssign: color => received.push([node.light, color]) }
-      lightsNode.setupLights(lit, [node])
-    }
-    context.irradiance = irradiance
+    const [map] = lightsNode.getLightNodes(lit).flatMap(({ light }) => _mapped.get(light) ?? [])
+    const others = received(lit, light => !_mapped.has(light))
     // One colour for all of them: what vertices hand on costs each pixel.
-    if (received.length > 0) irradiance.addAssign(atVertices(received))
+    if (others.length > 0 || map !== undefined) {
+      context.irradiance.addAssign(atVertices(others, map))
+    }
     this.indirect(builder)
   }
 
@@ -134,6 +106,9 @@ export class VertexLitMaterial extends MeshLambertNodeMaterial {
   /** Share of what faces the sky that snow covers, in [0, 1]; null for none. */
   snowNode: Node<'float'> | null = null
 
+  /** Cosines of the slopes between which snow comes to lie; branches hold it on steep crowns. */
+  lying: readonly [number, number] = LYING
+
   override setupLightingModel(): PhongLightingModel {
     return new VertexLightingModel()
   }
@@ -142,7 +117,7 @@ export class VertexLitMaterial extends MeshLambertNodeMaterial {
     super.setupDiffuseColor(builder)
     if (this.snowNode === null) return
     const { rgb, a } = diffuseColor as unknown as Node<'vec4'>
-    const lying = smoothstep(...LYING, normalWorldGeometry.y).mul(this.snowNode)
+    const lying = smoothstep(...this.lying, normalWorldGeometry.y).mul(this.snowNode)
     diffuseColor.assign(vec4(mix(rgb, vec3(...SNOW), lying), a))
   }
 }

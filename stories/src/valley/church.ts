@@ -55,7 +55,7 @@ function wallColor(): Node<'vec3'> {
   const stone = vec3(0.36, 0.34, 0.31)
   // Plaster is greyer where rain runs down, below the eaves and over the stones.
   const weathered = smoothstep(3, 0.6, y).mul(0.16).oneMinus()
-  let color: Node<'vec3'> = mix(stone, vec3(0.5, 0.47, 0.41).mul(weathered), step(1.2, y))
+  let color: Node<'vec3'> = mix(stone, vec3(0.36, 0.34, 0.3).mul(weathered), step(1.2, y))
   color = mix(color, stone.mul(0.9), openings(0.18).max(door(0.22)))
   const bars = step(0.12, fract(y.mul(1.6)).sub(0.5).abs()).mul(step(0.05, inBay.abs()))
   const isFar = smoothstep(60, 160, positionView.z.negate())
@@ -90,7 +90,7 @@ export class Church extends Group {
     super()
     const walls = new VertexLitMaterial()
     walls.colorNode = wallColor()
-    const slates = new VertexLitMaterial({ color: '#5b3a2e' })
+    const slates = new VertexLitMaterial({ color: '#4b352d' })
     slates.snowNode = snow
     const [side, height] = TOWER
     const [width, eaves, length] = NAVE

@@ -1,4 +1,4 @@
-import { floor, fract, positionWorld, sin, smoothstep, vec3 } from 'three/tsl'
+import { floor, fract, mix, positionWorld, sin, smoothstep, vec3 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { VILLAGE } from './places'
 
@@ -14,6 +14,10 @@ const CROPS = [
 /** Width of a strip of fields [m]. */
 export const STRIP = 70
 
+/** Length of a field [m], and that over its width. */
+const LENGTH = 160
+const LONG = LENGTH / STRIP
+
 /** Distance between two furrows, and between the tracks of a farmer's wheels [m]. */
 const FURROW = 2.6
 const LANE = 17.5
@@ -21,15 +25,29 @@ const LANE = 17.5
 /** Half width of the road from the village to the lake [m]. */
 export const HALF_ROAD = 2.2
 
-/** Fields in strips, with their furrows; grass in some. */
-export function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'> {
+/** Parts of a strip's width by which its borders stray, and of the verge of grass between two fields, half of it. */
+const STRAY = 0.012
+const VERGE = 0.011
+
+/**
+ * Fields in strips, with their furrows; grass in some, and on the verges between them.
+ *
+ * @param noise - Noise of clumps of grass, about in [−1, 1].
+ */
+export function crops(
+  grass: Node<'vec3'>,
+  distance: Node<'float'>,
+  noise: Node<'float'>
+): Node<'vec3'> {
   const { x, z } = positionWorld
   const across = x
     .div(STRIP)
     .add(sin(z.div(300)).mul(0.3))
     .toConst()
-  const strip = floor(across).toConst()
-  const row = floor(z.div(160).add(strip.mul(0.7))).toConst()
+  const strayed = across.add(noise.mul(STRAY)).toConst()
+  const strip = floor(strayed).toConst()
+  const along = z.div(LENGTH).add(strip.mul(0.7)).toConst()
+  const row = floor(along).toConst()
   const chance = fract(sin(strip.mul(127.1).add(row.mul(311.7))).mul(43.76)).toConst()
   let color = grass
   for (const [i, crop] of CROPS.entries()) {
@@ -42,8 +60,20 @@ export function crops(grass: Node<'vec3'>, distance: Node<'float'>): Node<'vec3'
     .abs()
     .mul(LANE)
   const track = smoothstep(0.5, 0.2, aside.sub(0.9).abs()).mul(smoothstep(700, 250, distance))
+  const border = fract(strayed)
+    .sub(0.5)
+    .abs()
+    .max(
+      fract(along)
+        .sub(0.5)
+        .abs()
+        .mul(LONG)
+        .sub(LONG / 2 - 0.5)
+    )
+  const verge = smoothstep(0.5 - 2 * VERGE, 0.5 - VERGE, border)
   const isCorn = chance.greaterThan(0.4).select(1, 0)
-  return color.mul(furrows.mul(0.12).add(1).sub(track.mul(isCorn).mul(0.3)))
+  const tilled = color.mul(furrows.mul(0.12).add(1).sub(track.mul(isCorn).mul(0.3)))
+  return mix(tilled, grass.mul(0.8), verge)
 }
 
 /** 1 on that road. Twin of the middle: `roadMiddle` of the ground. */

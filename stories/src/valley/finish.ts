@@ -105,6 +105,8 @@ export class ValleyFinish {
     this.#air.picture.scale = scale
     scenePass.setMRT(null)
     const motion = antialiasing === 'traa' || scale < 1 ? this.#motion(scale) : null
+    // The air asks for no colour where nothing is drawn; velocities are asked for everywhere.
+    Object.assign(scenePass, { autoClearColor: motion !== null })
     this.#occlusion = effects.occlusion
       ? this.#keep(new LastOcclusion(this.#renderer, depth, this.#camera))
       : undefined

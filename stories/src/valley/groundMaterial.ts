@@ -35,8 +35,8 @@ export const FARMED = 40
 /** Depth by which the snow line comes down while snow lies everywhere [m]. */
 const FALLEN_SNOW = 2300
 
-/** Part of a snowed wood that is dark, seen from afar. */
-const WOODS = 0.84
+/** Parts of a snowed wood that are dark, seen from afar: between crowns, and on their tops. */
+const WOODS = [0.97, 0.62] as const
 
 /** Distances within which the finest grain of the ground is drawn, and that of tufts [m]. */
 const NEAR = 200
@@ -241,7 +241,7 @@ export function groundMaterial(
   const farmed = Fn(() => {
     const ground = meadow.toVar()
     If(height.lessThan(FARMED), () => {
-      const tilled = mix(meadow, crops(meadow, distance), field)
+      const tilled = mix(meadow, crops(meadow, distance, clumps), field)
       ground.assign(mix(tilled, vec3(0.24, 0.21, 0.17), roadAt()))
     })
     return ground
@@ -259,7 +259,7 @@ export function groundMaterial(
   const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
   // Of woods one sees the trunks and the undersides of branches, too.
-  const dark = forest.mul(fine.mul(0.25).add(WOODS)).clamp()
+  const dark = forest.mul(mix(float(WOODS[0]), float(WOODS[1]), canopy)).clamp()
   // Heights are those that no noise takes a part beyond.
   const color = Fn(() => {
     const result = farmed.toVar()

@@ -11,10 +11,13 @@ const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
   ['SkyEnvironment', 'mirrored sky'],
   ['PMREM', 'mirrored sky'],
   ['LakeMirror', 'mirrored sky'],
+  ['SkyLightMap', 'light of the sky on the land'],
   ['Welkin.CloudShadows', "clouds' shadows"],
   ['Welkin.FogLight', 'light of the mist'],
   ['Welkin.CloudFogLight', 'light of the mist'],
-  ['Welkin.Cloud', 'clouds, rain and snow under them'],
+  ['Welkin.CloudsFall', 'rain and snow under clouds'],
+  // Banks of mist are clouds.
+  ['Welkin.Cloud', 'clouds and mist'],
   ['Welkin.LightShafts', 'light shafts'],
   ['Welkin.Exposure', 'exposure'],
   ['Welkin.PrecipitationSkylight', 'light of rain and snow'],
@@ -34,8 +37,8 @@ const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
   ['Shown', 'tone mapping'],
   // A pass of three's, of what stands in the scene.
   ['output', 'land, trees, village and lake, lit'],
-  // The picture, which exposure meters: all that is drawn over the scene, pixel by pixel.
-  ['Picture', 'sky, stars, haze, mist, rain and snow']
+  // The picture, which exposure meters: all that is drawn over the scene, pixel by pixel, and put together.
+  ['Picture', 'sky, stars and haze, put together']
 ]
 
 /** Post effects that the last pass draws. */

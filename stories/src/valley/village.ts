@@ -29,7 +29,8 @@ import { groundHeight } from './ground'
 import { VILLAGE } from './places'
 import { roof, roofColor } from './roof'
 import type { StreetLamps } from './StreetLamps'
-import { setLit, VertexLitMaterial } from './VertexLitMaterial'
+import { setLit } from './litLights'
+import { VertexLitMaterial } from './VertexLitMaterial'
 
 const HOUSES = 46
 /** Luminances of the darkest and the brightest lit window [cd/m²], and luminous intensity of the lamp by the church [cd]. */
@@ -53,18 +54,18 @@ interface House {
   roof: number
 }
 
-/** Colours of plaster: lime, cream, ochre, rose and grey (hue, saturation, lightness). */
+/** Colours of new plaster: lime, cream, ochre, rose and grey (hue, saturation, lightness, linear). Rain and dust take about half of it. */
 const PLASTERS = [
   [0.11, 0.12, 0.62],
   [0.12, 0.3, 0.58],
   [0.1, 0.42, 0.5],
-  [0.03, 0.25, 0.55],
+  [0.05, 0.17, 0.55],
   [0.58, 0.05, 0.52]
 ] as const
 
 function plasterOf(random: () => number): [number, number, number] {
   const [hue, saturation, lightness] = PLASTERS[Math.floor(PLASTERS.length * random())]
-  return [hue, saturation, lightness * (0.7 + 0.2 * random())]
+  return [hue, saturation, lightness * (0.44 + 0.16 * random())]
 }
 
 /** Houses in a spiral about a church. */
@@ -137,7 +138,14 @@ function wallColor(
   color = mix(color, glass, isWindow)
   const isDoor = step(x.abs(), 0.055).mul(step(y, 0.4)).mul(step(0.5, normalGeometry.z))
   color = mix(color, vec3(0.16, 0.09, 0.05), isDoor)
-  return color.mul(smoothstep(1.03, 0.9, y).mul(0.55).add(0.45))
+  // Streaks of rain, and splashes at the foot; trees and other houses take part of the sky's light there.
+  const streaks = hash(along.mul(23).floor().add(house.mul(31)).add(400))
+  const aged = streaks
+    .mul(y)
+    .mul(0.16)
+    .oneMinus()
+    .mul(smoothstep(-0.1, 0.45, y).mul(0.3).add(0.7))
+  return color.mul(aged).mul(smoothstep(1.03, 0.86, y).mul(0.62).add(0.38))
 }
 
 /** A village whose lamps and windows light up at night. */
@@ -220,7 +228,7 @@ export function createVillage(
   walls.emissiveNode = lamps === null ? windows : windows.add(lamps.reflected().mul(lamplight))
   const tiles = new VertexLitMaterial()
   tiles.colorNode = roofColor()
-  const plaster = new VertexLitMaterial({ color: '#b9b1a2' })
+  const plaster = new VertexLitMaterial({ color: '#6f655a' })
   for (const each of [tiles, plaster]) each.snowNode = snow
   const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)
   const roofs = new InstancedMesh(roof(), tiles, HOUSES)
@@ -240,7 +248,7 @@ export function createVillage(
       i,
       matrix.compose(new Vector3(x, base + height, z), turn, new Vector3(width, 3.2, depth))
     )
-    const ridge = new Vector3(0.12 * width, base + height + 1.2, 0.3 * depth)
+    const ridge = new Vector3(0.12 * width, base + height + 0.9, 0.3 * depth)
     chimneys.setMatrixAt(
       i,
       matrix.compose(

@@ -1,5 +1,8 @@
 import { cloudPreset, cloudQualities } from '@welkin/clouds'
+import { MathUtils } from 'three'
 import type { CloudLayers, CloudQuality, CloudQualityName } from '@welkin/clouds'
+
+const { clamp, lerp } = MathUtils
 
 /** A weather of the valley: numbers that all blend. */
 export interface Weather {
@@ -7,8 +10,10 @@ export interface Weather {
   readonly cumulus: number
   readonly deck: number
   readonly cirrus: number
-  /** Altitude of the base of cumulus [m]: over the slopes where it is alone, else well below the deck. */
+  /** Altitude of the base of cumulus [m]: well below the deck. */
   readonly base: number
+  /** Altitude of the base of the deck [m]. */
+  readonly deckBase: number
   /** Aerosol of the air over that of clear air. */
   readonly turbidity: number
   /** Share of the mist, in [0, 1]: banks of fog over the lake. */
@@ -21,14 +26,16 @@ export interface Weather {
   readonly flashes: number
 }
 
-const calm = { base: 1500, tall: 1200, rain: 0, snow: 0, flashes: 0 }
+const calm = { base: 1500, deckBase: 2700, tall: 1200, rain: 0, snow: 0, flashes: 0 }
 /** Cumulus alone. */
 const high = { ...calm, base: 1950 }
+/** Cumulus and a deck over the summits: before them, clouds of the colour of those behind cut pieces out of the mountains. */
+const highest = { ...calm, base: 2300, deckBase: 3500, tall: 1100 }
 
 export const weathers = {
   fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...high },
   clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...high },
-  broken: { cumulus: 0.4, deck: 0.55, cirrus: 0, turbidity: 2.5, mist: 0, ...calm },
+  broken: { cumulus: 0.4, deck: 0.55, cirrus: 0, turbidity: 2.5, mist: 0, ...highest },
   mist: { cumulus: 0, deck: 0, cirrus: 0, turbidity: 3, mist: 1, ...calm },
   overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...calm },
   shower: { cumulus: 0, deck: 0.75, cirrus: 0, turbidity: 2.25, mist: 0, ...calm, rain: 6 },
@@ -69,7 +76,8 @@ const fogForm: typeof deckForm = {
   shapeScale: 0.25,
   detailAmount: 0,
   edgeSoftness: 0.8,
-  wind: { east: 0.4, north: 0.1 }
+  // What moves less than a fiftieth of a pixel in a frame is not filtered anew.
+  wind: { east: 0.12, north: 0.03 }
 }
 
 /** Layers that `WeatherBlend` sets: cumulus, a deck over them or banks of fog, cirrus. */
@@ -84,14 +92,25 @@ export const valleyLayers = [
   { ...cloudPreset('cirrus').at(0).parameters, coverage: 0, wind: { east: 26, north: -8 } }
 ]
 
-/**
- * Most steps to the light, least depth of a step, and part of the steps through a layer, in banks of fog: they are soft, and
- * have no bumps that shade each other.
- */
-const FOG_STEPS = { light: 1, depth: 1.5, layer: 0.6 }
+/** Most steps to the light, least depth of a step, and part of the steps through a layer. */
+interface Steps {
+  readonly light: number
+  readonly depth: number
+  readonly layer: number
+}
 
-/** Likewise in decks, and in what is below them. */
-const DECK_STEPS = { light: 2, depth: 0.6, layer: 1 }
+/** Steps in banks of fog: they are soft, and have no bumps that shade each other. */
+const FOG_STEPS: Steps = { light: 1, depth: 3, layer: 0.43 }
+
+/** Steps in decks, and in what is below them. */
+const DECK_STEPS: Steps = { light: 2, depth: 0.6, layer: 1 }
+
+/** Height of cumulus from which it is a tower [m], and growth of steps in the tallest ones: much of what is in sight is cloud. */
+const TOWERS = [1200, 6000] as const
+const TOWER_GROWTH = 1.5
+
+/** Share of a deck, or of banks of fog, from which all of these hold: with less, the march goes over to them. */
+const WHOLE = 0.4
 
 /** Rate of rain that counts as much as a rate of snow, over that [–]. */
 const SNOW_AS_RAIN = 4
@@ -142,21 +161,26 @@ export class WeatherBlend {
     return (hasMist ? mist : 0) - deck
   }
 
-  /** Fineness of clouds in this weather, over that of others. */
+  /** Fineness of clouds in this weather, over that of others: it goes with decks and banks of fog as they come and go. */
   qualityOf(
     quality: CloudQualityName | CloudQuality,
     hasMist: boolean
   ): CloudQualityName | CloudQuality {
-    const isDeck = this.current.deck > 0
-    if (this.#fog(hasMist) <= 0 && !isDeck) return quality
-    const steps = isDeck ? DECK_STEPS : FOG_STEPS
+    const [fog, deck] = [this.#fog(hasMist), this.current.deck].map(t => clamp(t / WHOLE, 0, 1))
+    const tower = clamp((this.current.tall - TOWERS[0]) / (TOWERS[1] - TOWERS[0]), 0, 1)
+    if (fog === 0 && deck === 0 && tower === 0) return quality
     const fine = typeof quality === 'string' ? cloudQualities[quality] : quality
-    const lightSteps = Math.min(fine.lightSteps, steps.light)
+    const between = (own: number, inFog: number, underDeck: number): number =>
+      lerp(lerp(own, inFog, fog), underDeck, deck)
+    const least = ({ light }: Steps): number => Math.min(fine.lightSteps, light)
+    const most = ({ depth }: Steps): number => Math.max(fine.depthStep, depth)
+    const [ofFog, ofDeck] = [FOG_STEPS, DECK_STEPS]
     return {
       ...fine,
-      lightSteps,
-      depthStep: Math.max(fine.depthStep, steps.depth),
-      layerSteps: Math.round(fine.layerSteps * steps.layer)
+      lightSteps: Math.round(between(fine.lightSteps, least(ofFog), least(ofDeck))),
+      depthStep: between(fine.depthStep, most(ofFog), most(ofDeck)),
+      layerSteps: Math.round(fine.layerSteps * between(1, ofFog.layer, ofDeck.layer)),
+      stepGrowth: fine.stepGrowth * lerp(1, TOWER_GROWTH, tower)
     }
   }
 
@@ -173,12 +197,14 @@ export class WeatherBlend {
     shadow: boolean,
     falls: boolean
   ): void {
-    const { cumulus, cirrus, base, tall, rain, snow } = this.current
+    const { cumulus, cirrus, base, deckBase, tall, rain, snow } = this.current
     const rates = [rain * SHAFTS[0], rain * SHAFTS[1] + snow, 0]
     // The deck and banks of fog are one layer: one goes before the other comes.
     const foggy = this.#fog(hasMist)
     layers.at(0).set({ baseAltitude: base, topAltitude: base + tall })
-    layers.at(1).set(foggy > 0 ? fogForm : deckForm)
+    const rise = deckBase - deckForm.baseAltitude
+    const [baseAltitude, topAltitude] = [deckBase, deckForm.topAltitude + rise]
+    layers.at(1).set(foggy > 0 ? fogForm : { ...deckForm, baseAltitude, topAltitude })
     const covers = [cumulus, Math.abs(foggy), cirrus]
     // Snow falls to the ground, rain melts high up; from one to the other the level goes with what falls.
     const freezingLevel = snow > 0 ? (FREEZING * rain) / (rain + SNOW_AS_RAIN * snow) : FREEZING

@@ -1,0 +1,57 @@
+import type { MoonDirectionalLight, NightLightProbe, SkyLightProbe } from '@welkin/atmosphere'
+import {
+  CloudCover,
+  cloudPreset,
+  cloudQualities,
+  clouds,
+  cloudShadow,
+  cloudSkyLight,
+  cloudWorldMap
+} from '@welkin/clouds'
+import type { CloudsNode } from '@welkin/clouds'
+import { shadow } from 'three/tsl'
+import { cloudCover } from '../clouds/cloudCover'
+import type { Land } from './land'
+
+/** Lights of a night: of the moon, of the sky that it lights, and of all else in the sky. */
+type NightLights = readonly [MoonDirectionalLight, SkyLightProbe, NightLightProbe]
+
+/** The world's clouds, and what they do to light. */
+interface WorldClouds {
+  /** Their mean, for exposure. */
+  readonly cover: CloudCover
+  /** Dims the lights of a night; before these first light anything. */
+  shade(lights: NightLights): void
+  dispose(): void
+}
+
+/** Has clouds dim the lights of a night: they cast no other shadows, whose maps would be of all that is in sight. */
+export function shadeNight(node: CloudsNode, [moonlight, ...probes]: NightLights): void {
+  moonlight.castShadow = true
+  Object.assign(moonlight.shadow, { shadowNode: cloudShadow(node, null, moonlight.source) })
+  for (const probe of probes) cloudSkyLight(probe, node)
+}
+
+/** The world's clouds over the land, which has its air as a post effect. */
+export async function worldClouds(): Promise<(land: Land) => WorldClouds> {
+  const picture = await cloudCover()
+  return ({ camera, air: { atmosphere, post, sun, sky } }) => {
+    if (post === undefined) throw new Error('worldClouds: there must be a post effect')
+    const { color, depth, pipeline } = post
+    const worldMap = cloudWorldMap(picture)
+    const layers = cloudPreset('mixed')
+    const quality = cloudQualities.medium
+    const node = clouds(color, depth, camera, atmosphere, layers, { quality, worldMap })
+    pipeline.outputNode = node
+    Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) })
+    cloudSkyLight(sky, node)
+    return {
+      cover: new CloudCover(layers, { light: node.light }),
+      shade: lights => shadeNight(node, lights),
+      dispose() {
+        node.dispose()
+        picture.dispose()
+      }
+    }
+  }
+}
