@@ -190,13 +190,16 @@ export class HeightFog implements SkyLayer {
     return { depth: depth, radiance: light }
   }
 
-  shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium | null {
-    if (!isSun && !this.sources.includes(ray.view.source)) return null
+  shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium {
     const { source, viewpoint } = ray.view
     const isSky = ray.distance.greaterThanEqual(SKY_DISTANCE)
     const all = rayLimits(viewpoint, ray.cosView).length
     const distance = isSky.select(all, ray.distance).toConst() as Float
     const fog = this.#along({ ...ray, distance })
+    const { through, depthAt } = fog
+    const medium = { front: fog.middleDistance, transmittance: through, singleScattered: null }
+    if (!isSun && !this.sources.includes(source))
+      return { ...medium, multiplyScattered: vec4(0), distanceAt: () => distance }
     const [once, often] = [vec4(0).toVar(), vec4(0).toVar()]
     If(fog.through.lessThan(1), () => {
       const { cosLight } = viewpoint
@@ -208,10 +211,8 @@ export class HeightFog implements SkyLayer {
       once.assign(scattered.once.mul(fog.seen))
       often.assign(scattered.often.mul(fog.seen))
     })
-    const { through, depthAt } = fog
     return {
-      front: fog.middleDistance,
-      transmittance: through,
+      ...medium,
       singleScattered: once,
       multiplyScattered: often,
       distanceAt: part => depthAt(part.mul(through.oneMinus()).oneMinus().log().negate())

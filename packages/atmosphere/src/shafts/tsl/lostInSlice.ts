@@ -71,8 +71,10 @@ export function lostInSlice(
       // Of fog what the slice adds to the light before it.
       const before = media.length > 0 ? mediaTo(from) : []
       const fog = media.reduce<Vec4>(
-        (light, { singleScattered: added, transmittance }, i) =>
-          light.mul(transmittance).add(added.sub(before[i].singleScattered).mul(part)),
+        (light, { singleScattered: added, transmittance }, i) => {
+          const left = light.mul(transmittance)
+          return added ? left.add(added.sub(before[i].singleScattered!).mul(part)) : left
+        },
         vec4(0)
       )
       if (media.length > 0) lost.addAssign(fog)
