@@ -66,10 +66,10 @@ export class ForwardShafts extends LightShafts {
 
   /** True if each fragment marches: rays of orthographic cameras do not meet in the camera. */
   private get isMarched(): boolean {
-    return this.quality === 'reference' || this.#isOrthographic
+    return this.quality === 'reference' || this.isOrthographic
   }
 
-  get #isOrthographic(): boolean {
+  private get isOrthographic(): boolean {
     return (this.camera as Partial<OrthographicCamera>).isOrthographicCamera === true
   }
 
@@ -123,7 +123,7 @@ export class ForwardShafts extends LightShafts {
         return taken.mul(to.distance ? this.#volume.lostTo(to.distance) : this.#volume.lostToSky())
       }
       const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
-      const start = this.#isOrthographic ? lit.toMapped(screenRay().origin) : undefined
+      const start = this.isOrthographic ? lit.toMapped(screenRay().origin) : undefined
       const ray = { direction, cosView, cosViewLight, distance: distanceOf(to), start }
       const pixel = screenCoordinate.xy.floor()
       return taken.mul(lostLight(lit, this.shadowedAir, ray, this.steps, staggered(pixel)))
