@@ -34,7 +34,8 @@ const steps = [
     id: 'shafts',
     title: 'Reference shafts',
     script: 'validate',
-    args: ['--check', '--shafts', '--all', '--every', '4'],
+    // Every fourth camera, half of them at the quality that shafts have by default.
+    args: ['--check', '--shafts', '--all', '--quality', 'medium,high', '--every', '8'],
     lane: 'reference'
   }
 ]

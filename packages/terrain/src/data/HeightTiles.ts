@@ -27,6 +27,7 @@ import {
   TilesAbout,
   TileStore,
   type ReadTile,
+  type TileCounts,
   type TileOptions
 } from './TileStore'
 import type { TileUrl } from './tileUrl'
@@ -148,8 +149,8 @@ export class HeightTiles implements PageSource {
     return this.#store.version
   }
 
-  /** Tiles in memory, requests under way, and memory of the tiles [bytes]. */
-  get tiles(): { count: number; loading: number; bytes: number } {
+  /** Tiles in memory, requests under way, tiles that are not there, and memory of the tiles [bytes]. */
+  get tiles(): TileCounts {
     return this.#store.tiles
   }
 

@@ -29,7 +29,7 @@ export class HeightPages {
   #renderer: Renderer | null = null
   /** Tiles by the slot of their page. */
   readonly #owners: (Tile | null)[]
-  readonly #loads = new PageLoads<Float32Array>()
+  readonly #loads: PageLoads<Float32Array>
   /** Whole faces that are drawn flat until their heights arrive. */
   readonly #flat = new Set<Tile>()
   /** Answer of the source that is no heights. */
@@ -39,12 +39,19 @@ export class HeightPages {
   /** Pages in a row that there was no room for. */
   #refused = 0
 
-  constructor(source: HeightSource | PageSource, figure: Figure, options: FixedOptions) {
+  /** @param onChange - Called between drawings when the next may show more: see `PageLoads`. */
+  constructor(
+    source: HeightSource | PageSource,
+    figure: Figure,
+    options: FixedOptions,
+    onChange: () => void = () => undefined
+  ) {
     const { imagery } = options
+    this.#loads = new PageLoads(onChange)
     this.#source = source
     this.atlas = new PageAtlas(options)
     this.#baker = new PageBaker(source, figure, this.atlas, options)
-    this.#images = imagery && new ImageLoader(imagery, tile => this.#baker.request(tile))
+    this.#images = imagery && new ImageLoader(imagery, tile => this.#baker.request(tile), onChange)
     this.#owners = Array.from({ length: this.atlas.capacity }, () => null)
   }
 
@@ -85,6 +92,12 @@ export class HeightPages {
   get isStuck(): boolean {
     if (this.#refused > 0) return this.#refused > KEEP_FOR
     return !this.#loads.isWaiting && this.#images?.loads.isWaiting !== true
+  }
+
+  /** True if the next drawing may have pages that this one had no time or room for. */
+  get isBusy(): boolean {
+    if (this.#refused > 0) return this.#refused <= KEEP_FOR
+    return this.#loads.isThere || this.#images?.loads.isThere === true
   }
 
   /** True if a whole face in the last selection is still flat. */
