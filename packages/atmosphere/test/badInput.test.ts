@@ -118,11 +118,15 @@ throwsEach('atmospheres, their parameters and nodes', [
     () => (atmosphere.sunDirection = wrong([0, 1, 0]))
   ],
   [
-    'Atmosphere.add: layer must be a SkyLayer, such as moon() or heightFog(), got a Mesh',
+    'aerialPerspectiveFog: no options: atmosphere.add(forwardShafts()), got { shafts: null }',
+    () => aerialPerspectiveFog(atmosphere, wrong({ shafts: null }))
+  ],
+  [
+    'Atmosphere.add: layer must be a SkyLayer, such as moon() or forwardShafts(), got a Mesh',
     () => atmosphere.add(wrong(new Mesh()))
   ],
   [
-    'Atmosphere.add: layer must be a SkyLayer, such as moon() or heightFog(), got [undefined]',
+    'Atmosphere.add: layer must be a SkyLayer, such as moon() or forwardShafts(), got [undefined]',
     () => atmosphere.add(wrong([undefined]))
   ],
   [

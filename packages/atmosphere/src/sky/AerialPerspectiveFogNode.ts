@@ -41,6 +41,15 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
   }
 }
 
-/** Aerial perspective as a scene's fog: see {@link AerialPerspectiveFogNode}. */
-export const aerialPerspectiveFog = (atmosphere: Atmosphere): AerialPerspectiveFogNode =>
-  new AerialPerspectiveFogNode(atmosphere)
+/**
+ * Aerial perspective as a scene's fog: see {@link AerialPerspectiveFogNode}.
+ *
+ * @param options - None: light shafts of materials are a layer of the sky, `forwardShafts`.
+ */
+export const aerialPerspectiveFog = (
+  atmosphere: Atmosphere,
+  options?: undefined
+): AerialPerspectiveFogNode =>
+  options
+    ? fail('aerialPerspectiveFog', 'no options: atmosphere.add(forwardShafts())', options)
+    : new AerialPerspectiveFogNode(atmosphere)
