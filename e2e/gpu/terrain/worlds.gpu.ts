@@ -1,0 +1,117 @@
+import { Atmosphere } from '@welkin/atmosphere'
+import { Ellipsoid } from '@welkin/geo'
+import { MountainHeights, Terrain } from '@welkin/terrain'
+import { Color, Matrix4, OrthographicCamera, PerspectiveCamera, Scene, Vector3 } from 'three'
+import { positionView, vec4 } from 'three/tsl'
+import { expectTrue } from '../harness/expect'
+import { gpuTest } from '../harness/gpu-test'
+import { nextFrame } from '../harness/graphics'
+
+const SIZE = { width: 48, height: 32 }
+const PLACE = { longitude: 0.494, latitude: 46.35 }
+const options = { resolution: 16, seaLevel: -Infinity, pageMemory: 20 }
+
+/** A terrain that draws where its pixels are, from the camera [units]. */
+function groundOf(atmosphere: Atmosphere): { terrain: Terrain; scene: Scene } {
+  const terrain = new Terrain(atmosphere, new MountainHeights({ seed: 513 }), options)
+  terrain.material.fragmentNode = vec4(positionView, 1)
+  const scene = new Scene()
+  scene.background = new Color(0, 0, 0)
+  return { terrain, scene: scene.add(terrain) }
+}
+
+/** Camera above a place, in the frame of the world; its pitch in degrees. */
+function cameraOver(terrain: Terrain, clearance: number, pitch: number): PerspectiveCamera {
+  const { atmosphere } = terrain
+  const { ellipsoid } = atmosphere
+  const units = 1 / atmosphere.metersPerUnit
+  const camera = new PerspectiveCamera(60, SIZE.width / SIZE.height, 0.05 * units, 1e8 * units)
+  const height = terrain.heightAt(PLACE.longitude, PLACE.latitude) + clearance
+  const position = ellipsoid.geodeticToECEF({ ...PLACE, height })
+  const toWorld = atmosphere.worldToECEF.clone().invert()
+  const frame = ellipsoid.localYUpFrame(position, new Matrix4()).premultiply(toWorld)
+  frame.decompose(camera.position, camera.quaternion, new Vector3())
+  camera.rotateX((pitch * Math.PI) / 180)
+  camera.updateMatrixWorld()
+  return camera
+}
+
+gpuTest(
+  'draws the ground where the CPU finds it, in kilometres, with a moved origin, and on a small planet',
+  async t => {
+    const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
+    renderer.highPrecision = true
+    const kilometres = new Atmosphere()
+    kilometres.place(PLACE)
+    kilometres.metersPerUnit = 1000
+    const moved = new Atmosphere()
+    moved.place(PLACE)
+    moved.worldToECEF.multiply(new Matrix4().makeTranslation(-30_000, 200, 45_000))
+    const small = new Atmosphere({ ellipsoid: new Ellipsoid(1e6) })
+    small.place(PLACE)
+    for (const [label, atmosphere] of Object.entries({ kilometres, moved, small })) {
+      const { terrain, scene } = groundOf(atmosphere)
+      const metres = atmosphere.metersPerUnit
+      const point = new Vector3()
+      for (const [clearance, pitch, tolerance] of [
+        [2, -90, 0.01],
+        [500, -40, 4]
+      ]) {
+        const camera = cameraOver(terrain, clearance, pitch)
+        terrain.update(renderer, camera, Infinity)
+        const picture = await t.render(renderer, scene, camera, SIZE)
+        let worst = 0
+        for (let row = 0; row < SIZE.height; row += 3) {
+          for (let column = 0; column < SIZE.width; column += 3) {
+            const [x, y, z] = picture.at(column, row)
+            expectTrue(z < 0, `${label}: a hole from ${clearance} m`)
+            point.set(x, y, z).applyMatrix4(camera.matrixWorld)
+            const position = point.clone().applyMatrix4(atmosphere.worldToECEF)
+            const off = atmosphere.ellipsoid.heightAt(position) - terrain.heightBelow(point)
+            worst = Math.max(worst, Math.abs(off))
+          }
+        }
+        t.note(`${label}, ${clearance} m: ${worst.toFixed(4)} m, in units of ${metres} m`)
+        expectTrue(worst < tolerance, `${label}: ${worst} m off from ${clearance} m`)
+      }
+      terrain.dispose()
+    }
+  }
+)
+
+gpuTest(
+  'draws two cameras in a frame as each alone, and all of an orthographic view',
+  async t => {
+    const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
+    renderer.highPrecision = true
+    const atmosphere = new Atmosphere()
+    atmosphere.place(PLACE)
+    const { terrain, scene } = groundOf(atmosphere)
+    const wide = new OrthographicCamera(-1.5e6, 1.5e6, 1e6, -1e6, 0, 1e7)
+    wide.position.y = terrain.heightAt(PLACE.longitude, PLACE.latitude) + 4000
+    wide.rotation.x = -Math.PI / 2
+    wide.updateMatrixWorld()
+    const cameras = [cameraOver(terrain, 2, -60), cameraOver(terrain, 9000, -50), wide]
+    const alone = []
+    for (const camera of cameras) {
+      terrain.update(renderer, camera, Infinity)
+      alone.push(await t.render(renderer, scene, camera, SIZE))
+    }
+    const holes = alone.map(({ data }) => data.filter((z, i) => i % 4 === 2 && !(z < 0)).length)
+    t.note(`pixels without ground: ${holes.join(', ')}`)
+    expectTrue(Math.max(...holes) === 0, `pixels without ground: ${holes.join(', ')}`)
+    for (let frame = 0; frame < 2; frame++) {
+      await nextFrame()
+      for (const [i, camera] of cameras.slice(0, 2).entries()) {
+        const { data } = await t.render(renderer, scene, camera, SIZE)
+        const apart = data.reduce(
+          (most, value, k) => Math.max(most, Math.abs(value - alone[i].data[k])),
+          0
+        )
+        expectTrue(apart < 1e-3, `camera ${i} in frame ${frame} is ${apart} m off`)
+      }
+    }
+    terrain.dispose()
+  },
+  { backends: ['webgpu'] }
+)
