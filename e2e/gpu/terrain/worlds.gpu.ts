@@ -1,4 +1,4 @@
-import { Atmosphere } from '@welkin/atmosphere'
+import { Atmosphere, AtmosphereParameters } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
 import { MountainHeights, Terrain } from '@welkin/terrain'
 import { Color, Matrix4, OrthographicCamera, PerspectiveCamera, Scene, Vector3 } from 'three'
@@ -47,7 +47,8 @@ gpuTest(
     const moved = new Atmosphere()
     moved.place(PLACE)
     moved.worldToECEF.multiply(new Matrix4().makeTranslation(-30_000, 200, 45_000))
-    const small = new Atmosphere({ ellipsoid: new Ellipsoid(1e6) })
+    const parameters = new AtmosphereParameters({ bottomRadius: 1e6, topRadius: 1.06e6 })
+    const small = new Atmosphere({ parameters, ellipsoid: new Ellipsoid(1e6) })
     small.place(PLACE)
     for (const [label, atmosphere] of Object.entries({ kilometres, moved, small })) {
       const { terrain, scene } = groundOf(atmosphere)

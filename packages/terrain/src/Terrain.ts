@@ -90,7 +90,7 @@ export class Terrain extends GroundMesh {
     checkFixed('Terrain', all)
     const figure = figureOf(atmosphere)
     const uniforms = new TerrainUniforms(figure)
-    const tiles = new PagedTiles(source, figure, all)
+    const tiles = new PagedTiles(source, figure, all, () => this.onChange?.())
     const grain = grainTexture()
     const material = terrainMaterial(
       atmosphere,
@@ -171,13 +171,7 @@ export class Terrain extends GroundMesh {
    * Called when another drawing would show more, for renderers that draw on demand: data have arrived, or what failed is asked
    * for again, 5 s later; and within a drawing as long as pages are being drawn or fade in.
    */
-  get onChange(): (() => void) | null {
-    return this.#tiles.onChange
-  }
-
-  set onChange(value: (() => void) | null) {
-    this.#tiles.onChange = value
-  }
+  onChange: (() => void) | null = null
 
   /** Lines that name the sources of heights and imagery: yours to show. */
   get attributions(): string[] {

@@ -106,11 +106,11 @@ it('tells who draws on demand each time that another drawing would show more, an
     if (level === 1 && failures++ === 0) return Promise.reject(new Error('no network'))
     return new Promise(resolve => arrive.push(() => resolve(flat(side, 700))))
   })
-  const tiles = new PagedTiles(source, earth, { ...DEFAULTS, resolution: RESOLUTION })
   const renderer = rendererOf()
   const viewer = viewerAt(0, 2e6)
   let asked = 1
-  tiles.onChange = () => void asked++
+  const few = { ...DEFAULTS, resolution: RESOLUTION }
+  const tiles = new PagedTiles(source, earth, few, () => void asked++)
   vi.useFakeTimers()
   /** Draws as long as it is asked for. */
   const draw = async (): Promise<number> => {

@@ -198,8 +198,9 @@ export class ScreenShafts implements ScreenShadows {
     const thinning = this.grid.thinningOn(ray.cosView)
     const { front, beyond, depth } = this.#seenAt(at, distance, thinning, false)
     const { isOrthographicCamera } = this.#shafts.camera as OrthographicCamera
-    const beside = isOrthographicCamera && vec3(this.#rays.position(renderer, at, float(0.5)).xy, 0)
-    const start = beside ? (view.toMapped(beside).toConst() as Vec3) : undefined
+    const start = isOrthographicCamera
+      ? view.toMapped(vec3(this.#rays.position(renderer, at, float(0.5)).xy, 0))
+      : undefined
     let seen: ShaftRay = { ...ray, start }
     if (front !== undefined) {
       const { behind, distance: nearest } = front

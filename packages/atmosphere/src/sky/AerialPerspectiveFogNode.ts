@@ -28,7 +28,7 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
 
   /** Asked by three of what is in `scene.fog` alone. @throws Always: a node does not belong there. */
   get isFogExp2(): boolean {
-    return fail('aerialPerspectiveFog', 'set it as scene.fogNode, not as scene.fog')
+    return fail('aerialPerspectiveFog', 'set it as scene.fogNode')
   }
 
   override setup(_builder: NodeBuilder): Node {
@@ -51,5 +51,5 @@ export const aerialPerspectiveFog = (
   options?: undefined
 ): AerialPerspectiveFogNode =>
   options
-    ? fail('aerialPerspectiveFog', 'no options: atmosphere.add(forwardShafts())', options)
+    ? fail('aerialPerspectiveFog', 'no options; add forwardShafts()')
     : new AerialPerspectiveFogNode(atmosphere)

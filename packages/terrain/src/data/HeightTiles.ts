@@ -2,6 +2,7 @@ import { MathUtils, type Vector3 } from 'three'
 import { checkRange, withDefaults } from '@welkin/atmosphere'
 import { checkPositive } from '@welkin/geo'
 import type { HeightSample } from '../heights/HeightSource'
+import { levelOf } from '../heights/sampleGround'
 import type { PageRequest, PageSource } from '../pages/PageSource'
 import {
   geographicGradient,
@@ -139,8 +140,7 @@ export class HeightTiles implements PageSource {
     // Bicubic interpolation overshoots the pixels' heights.
     this.lowest = lowest - OVERSHOOT * 1000
     this.highest = highest + OVERSHOOT * 1000
-    const otherwise = Math.min(Math.max(0, lowest), highest)
-    this.#pyramid = new TilePyramid(size, minZoom, otherwise, wide)
+    this.#pyramid = new TilePyramid(size, minZoom, levelOf(all), wide)
     this.#isMercator = isMercator
   }
 

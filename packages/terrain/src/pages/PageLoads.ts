@@ -41,11 +41,6 @@ export class PageLoads<T> {
     return this.#open.length > 0
   }
 
-  /** True if there are data that have not been made use of. */
-  get isThere(): boolean {
-    return this.#open.some(({ state }) => state === 'there')
-  }
-
   get #open(): PageLoad<T>[] {
     return [...this.#loads.values()].filter(({ state }) => state === 'loading' || state === 'there')
   }

@@ -30,8 +30,6 @@ export class PagedTiles {
   readonly selection = noTiles()
   /** Pages drawn in a frame. */
   pagesPerFrame = 1
-  /** See `Terrain.onChange`. */
-  onChange: (() => void) | null = null
   /** True if nothing is missing in the last selection, and all pages have faded in. */
   isFull = false
   /** Levels of detail that the last picture lacked once it was as full as it gets; null before the first. */
@@ -41,13 +39,21 @@ export class PagedTiles {
   #pagesLeft = 0
 
   readonly #horizon: TerrainHorizon | null
+  readonly #onChange: () => void
 
-  constructor(source: HeightSource | PageSource, figure: Figure, options: FixedOptions) {
+  /** @param onChange - See `Terrain.onChange`. */
+  constructor(
+    source: HeightSource | PageSource,
+    figure: Figure,
+    options: FixedOptions,
+    onChange: () => void = () => undefined
+  ) {
+    this.#onChange = onChange
     const { resolution, detail, horizon } = options
     const cells = (2 * figure.maximumRadius) / resolution / FINEST_CELL
     const finestLevel = Math.max(Math.ceil(Math.log2(cells)), 0)
     this.tree = new TileTree(figure, source, finestLevel, detail)
-    this.pages = new HeightPages(source, figure, options, () => this.onChange?.())
+    this.pages = new HeightPages(source, figure, options, onChange)
     this.#horizon = horizon
   }
 
@@ -84,7 +90,9 @@ export class PagedTiles {
     this.isFull = selection.lag === 0 && !pages.isFlat(tree.selections)
     const isStuck = left > 0 && drawn === 0 && selection.missing.length > 0 && pages.isStuck
     if (selection.lag === 0 || isStuck) this.#lastLag = selection.lag
-    if (fades || pages.drawn !== before || pages.isBusy) this.onChange?.()
+    // What is out of view makes room some drawings later.
+    const waits = pages.refused > 0 && !pages.isStuck
+    if (fades || waits || pages.drawn !== before) this.#onChange()
     if (!viewer.isOverGround) return
     this.#horizon?.cull(selection, viewer, tree.figure, pages.atlas.heightSide - 1)
   }
