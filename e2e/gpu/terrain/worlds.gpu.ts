@@ -1,8 +1,16 @@
 import { Atmosphere, AtmosphereParameters } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
-import { MountainHeights, Terrain } from '@welkin/terrain'
+import {
+  GridHeights,
+  MountainHeights,
+  Terrain,
+  type HeightSource,
+  type PageSource,
+  type TerrainOptions
+} from '@welkin/terrain'
 import { Color, Matrix4, OrthographicCamera, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { positionView, vec4 } from 'three/tsl'
+import { randomNumbers } from '../../../packages/terrain/test/randomNumbers'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
@@ -12,8 +20,12 @@ const PLACE = { longitude: 0.494, latitude: 46.35 }
 const options = { resolution: 16, seaLevel: -Infinity, pageMemory: 20 }
 
 /** A terrain that draws where its pixels are, from the camera [units]. */
-function groundOf(atmosphere: Atmosphere): { terrain: Terrain; scene: Scene } {
-  const terrain = new Terrain(atmosphere, new MountainHeights({ seed: 513 }), options)
+function groundOf(
+  atmosphere: Atmosphere,
+  source: HeightSource | PageSource = new MountainHeights({ seed: 513 }),
+  more: TerrainOptions = {}
+): { terrain: Terrain; scene: Scene } {
+  const terrain = new Terrain(atmosphere, source, { ...options, ...more })
   terrain.material.fragmentNode = vec4(positionView, 1)
   const scene = new Scene()
   scene.background = new Color(0, 0, 0)
@@ -78,6 +90,51 @@ gpuTest(
       terrain.dispose()
     }
   }
+)
+
+gpuTest(
+  'draws measured ground where the CPU finds it, within 1 cm at 2 m',
+  async t => {
+    const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
+    renderer.highPrecision = true
+    const atmosphere = new Atmosphere()
+    atmosphere.place(PLACE)
+    // Numbers 90 m apart that jump by up to 60 m.
+    const side = 64
+    const random = randomNumbers(5)
+    const values = Array.from({ length: side * side }, () => 400 + 60 * random())
+    const half = (side / 2) * 0.0008
+    const grid = new GridHeights(values, {
+      width: side,
+      height: side,
+      west: PLACE.longitude - half,
+      east: PLACE.longitude + half,
+      south: PLACE.latitude - half,
+      north: PLACE.latitude + half,
+      outside: 430
+    })
+    // As fine as a terrain is by default.
+    const { terrain, scene } = groundOf(atmosphere, grid, { resolution: 12 })
+    const camera = cameraOver(terrain, 2, -90)
+    terrain.update(renderer, camera, Infinity)
+    const picture = await t.render(renderer, scene, camera, SIZE)
+    const point = new Vector3()
+    let worst = 0
+    for (let row = 0; row < SIZE.height; row += 2) {
+      for (let column = 0; column < SIZE.width; column += 2) {
+        const [x, y, z] = picture.at(column, row)
+        expectTrue(z < 0, 'a hole')
+        point.set(x, y, z).applyMatrix4(camera.matrixWorld)
+        const position = point.clone().applyMatrix4(atmosphere.worldToECEF)
+        const off = atmosphere.ellipsoid.heightAt(position) - terrain.heightBelow(point)
+        worst = Math.max(worst, Math.abs(off))
+      }
+    }
+    t.note(`${(1000 * worst).toFixed(2)} mm`)
+    expectTrue(worst < 0.01, `${worst} m off`)
+    terrain.dispose()
+  },
+  { backends: ['webgpu'] }
 )
 
 gpuTest(
