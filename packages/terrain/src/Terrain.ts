@@ -207,8 +207,7 @@ export class Terrain extends GroundMesh {
    */
   update(renderer: Renderer, camera: Camera, most?: number): void {
     const figure = this.#figure
-    if (figureOf(this.atmosphere) !== figure)
-      fail('Terrain', 'atmosphere must stay flat or round, as it was at first')
+    if (figureOf(this.atmosphere) !== figure) fail('Terrain', 'atmosphere must stay flat or round')
     const fromWorld = worldToGround(this.atmosphere)
     positionWorld.setFromMatrixPosition(camera.matrixWorld)
     positionECEF.copy(positionWorld).applyMatrix4(fromWorld)

@@ -66,7 +66,7 @@ export function pictureReader<T>(
     if (pixels === null || signal.aborted) return null
     const { width, height, data } = pixels
     if (width !== size || height !== size || data.length !== 4 * size ** 2) {
-      throw new PermanentFailure(`${width} × ${height} pixels, where size is ${size}`)
+      throw new PermanentFailure(`${url} has ${width} × ${height} pixels, size is ${size}`)
     }
     return decode(data)
   }
@@ -208,9 +208,7 @@ export class TileStore<T extends HeldTile> {
       this.#absent.add(key)
       // Once, and not of tiles that are missing among others: all is level ground, which says nothing.
       if (this.#version === 0 && this.#absent.size === MANY) {
-        const { z, x, y } = tileOfKey(key, this.wide)
-        const address = this.#url(z, x, y)
-        console.warn(`${this.#where}: no tile so far, ${address}: ${error.message}`)
+        console.warn(`${this.#where}: no tile so far, ${error.message}`)
       }
       return null
     }
@@ -218,9 +216,10 @@ export class TileStore<T extends HeldTile> {
 
   async #load(key: number, signal: AbortSignal): Promise<T> {
     const { z, x, y } = tileOfKey(key, this.wide)
-    const tile = await this.#read(this.#url(z, x, y), signal)
+    const url = this.#url(z, x, y)
+    const tile = await this.#read(url, signal)
     if (signal.aborted) throw new PermanentFailure('given up')
-    if (tile === null) throw new PermanentFailure('missing, refused or corrupt')
+    if (tile === null) throw new PermanentFailure(`${url} is missing, refused or corrupt`)
     this.#cache.set(key, tile, this.#bytes)
     this.#version++
     return tile

@@ -81,10 +81,7 @@ export class GroundMesh extends SeaMesh {
     checkFinite(`Terrain.${method}`, 'longitude', longitude)
     checkRange(`Terrain.${method}`, 'latitude', latitude, -90, 90)
     if (isFlat(figureOf(this.atmosphere)))
-      fail(
-        `Terrain.${method}`,
-        `a flat world has no longitudes: ask ${method.replace('At', 'Below')}`
-      )
+      fail(`Terrain.${method}`, `use ${method.replace('At', 'Below')} in a flat world`)
     return this.atmosphere.ellipsoid.geodeticToECEF({ longitude, latitude }, subpoint)
   }
 

@@ -29,7 +29,7 @@ it('are told of once, with the size that they have, if all have another', async 
   const { lines, tiles } = await told((z, x, y) => terrariumTile(z, x, y, hills, 128))
   expect(lines.length).toBe(1)
   expect(lines[0]).toMatch(
-    /^TerrariumTiles: no tile so far, \d+\/\d+\/\d+: 128 × 128 pixels, where size is 64$/
+    /^TerrariumTiles: no tile so far, \d+\/\d+\/\d+ has 128 × 128 pixels, size is 64$/
   )
   expect(tiles.tiles.absent).toBeGreaterThan(8)
 })
@@ -37,7 +37,7 @@ it('are told of once, with the size that they have, if all have another', async 
 it('are told of once, with an address, if a server refuses all', async () => {
   const { lines } = await told(() => null)
   expect(lines.length).toBe(1)
-  expect(lines[0]).toMatch(/: missing, refused or corrupt$/)
+  expect(lines[0]).toMatch(/ is missing, refused or corrupt$/)
 })
 
 it('are not told of where others are there', async () => {
@@ -59,7 +59,7 @@ it('are told of by imagery, too', async () => {
   for (const longitude of [-150, -60, 10, 100])
     await imagery.loadImage(pageAt(longitude, 40, 8), never)
   expect(warn.mock.calls.map(([line]) => String(line))).toEqual([
-    expect.stringMatching(/^ImageTiles: no tile so far.*32 × 32 pixels, where size is 64$/)
+    expect.stringMatching(/^ImageTiles: no tile so far, .* has 32 × 32 pixels, size is 64$/)
   ])
 })
 
