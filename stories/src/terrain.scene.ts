@@ -155,7 +155,7 @@ export async function createTerrain(
   // #endregion
   const { sun, post } = air
   prepareShadow(sun)
-  let onGround: Node<'float'> = shadow(sun)
+  let onGround: Node = shadow(sun)
   let color: Node | undefined = post?.color
   // #region terrain shadows
   const mountains = args.shafts ? groundShadow(atmosphere, terrain) : undefined

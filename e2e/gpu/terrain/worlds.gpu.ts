@@ -14,6 +14,7 @@ import { randomNumbers } from '../../../packages/terrain/test/randomNumbers'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
+import type { Picture } from '../harness/picture'
 
 const SIZE = { width: 48, height: 32 }
 const PLACE = { longitude: 0.494, latitude: 46.35 }
@@ -150,7 +151,7 @@ gpuTest(
     wide.rotation.x = -Math.PI / 2
     wide.updateMatrixWorld()
     const cameras = [cameraOver(terrain, 2, -60), cameraOver(terrain, 9000, -50), wide]
-    const alone = []
+    const alone: Picture[] = []
     for (const camera of cameras) {
       terrain.update(renderer, camera, Infinity)
       alone.push(await t.render(renderer, scene, camera, SIZE))
