@@ -1,26 +1,76 @@
-import { Vector3 } from 'three'
-import type { Intersection, Raycaster } from 'three'
+import { Mesh, Vector3 } from 'three'
+import type { InstancedBufferGeometry, Intersection, Raycaster } from 'three'
+import type { MeshStandardNodeMaterial } from 'three/webgpu'
 import { checkRange, type Atmosphere } from '@welkin/atmosphere'
 import { checkDirection, checkFinite, checkVector, fail } from '@welkin/geo'
 import type { HeightSample, HeightSource } from '../heights/HeightSource'
 import { sampleGround } from '../heights/sampleGround'
 import type { PageSource } from '../pages/PageSource'
-import { SeaMesh } from '../surface/SeaMesh'
+import { seaSlopeVariance } from '../surface/seaWaves'
+import type { TerrainUniforms } from '../TerrainUniforms'
 import { figureOf, isFlat, worldToGround } from '../tiles/cpu/figure'
 import { distanceToGround } from './distanceToGround'
 import { groundNormal } from './Ground'
 import { raycastGround } from './raycastGround'
 
+/** Level of "no sea", below all ground [m]. */
+const NO_SEA = -1e9
+
 const subpoint = new Vector3()
 const along = new Vector3()
 const sample: HeightSample = { height: 0, gradient: new Vector3() }
 
-/** Ground that answers questions about its surface, in float64 on the CPU. */
-export class GroundMesh extends SeaMesh {
+/** Mesh of ground and sea that answers questions about its surface, in float64 on the CPU. */
+export abstract class GroundMesh extends Mesh<InstancedBufferGeometry, MeshStandardNodeMaterial> {
   /** Shared, not owned. */
   declare readonly atmosphere: Atmosphere
   /** Heights of the ground; shared, not owned. */
   declare readonly source: HeightSource | PageSource
+
+  readonly #sea: Pick<TerrainUniforms, 'seaLevel' | 'seaVariance' | 'waveTime'>
+  #seaLevel = 0
+  #windSpeed = 0
+
+  constructor(
+    geometry: InstancedBufferGeometry,
+    material: MeshStandardNodeMaterial,
+    uniforms: TerrainUniforms
+  ) {
+    super(geometry, material)
+    this.#sea = uniforms
+  }
+
+  /** Surface of the sea above the ellipsoid [m]; −Infinity for none. */
+  get seaLevel(): number {
+    return this.#seaLevel
+  }
+
+  set seaLevel(value: number) {
+    if (value !== -Infinity) checkRange('Terrain', 'seaLevel', value, -1e5, 1e5)
+    this.#seaLevel = value
+    this.#sea.seaLevel.value = Math.max(value, NO_SEA)
+  }
+
+  /** Wind over the sea, in [0, 40] [m/s]. */
+  get windSpeed(): number {
+    return this.#windSpeed
+  }
+
+  set windSpeed(value: number) {
+    checkRange('Terrain', 'windSpeed', value, 0, 40)
+    this.#windSpeed = value
+    this.#sea.seaVariance.value = seaSlopeVariance(value)
+  }
+
+  /** Time of the sea's waves [s]. */
+  get waveTime(): number {
+    return this.#sea.waveTime.value
+  }
+
+  set waveTime(value: number) {
+    checkFinite('Terrain', 'waveTime', value)
+    this.#sea.waveTime.value = value
+  }
 
   /** Counts up whenever heights of the ground have changed, as when some have arrived. */
   get version(): number {
