@@ -11,6 +11,6 @@ const answers = {
   sunHeight: atmosphere.sunDirection.y,
   sunDeclination: Math.asin(sunDirectionECEF(date).z),
   layers: cloudPreset('mixed').length,
-  ground: new Terrain(atmosphere, new MountainHeights({ relief: 1000 })).heightAt(0, 23.4)
+  ground: new Terrain(atmosphere, new MountainHeights({ seed: 513 })).heightAt(1, 47)
 }
 console.log(JSON.stringify(answers))

@@ -118,15 +118,15 @@ throwsEach('atmospheres, their parameters and nodes', [
     () => (atmosphere.sunDirection = wrong([0, 1, 0]))
   ],
   [
-    'aerialPerspectiveFog: no options; add forwardShafts()',
+    'aerialPerspectiveFog: use forwardShafts()',
     () => aerialPerspectiveFog(atmosphere, wrong({ shafts: null }))
   ],
   [
-    'Atmosphere.add: layer must be a SkyLayer, such as forwardShafts(), got a Mesh',
+    'Atmosphere.add: layer must be a SkyLayer or forwardShafts(), got a Mesh',
     () => atmosphere.add(wrong(new Mesh()))
   ],
   [
-    'Atmosphere.add: layer must be a SkyLayer, such as forwardShafts(), got [undefined]',
+    'Atmosphere.add: layer must be a SkyLayer or forwardShafts(), got [undefined]',
     () => atmosphere.add(wrong([undefined]))
   ],
   [

@@ -122,9 +122,15 @@ export class DistanceFog implements SkyLayer {
     // The sky has no such fog.
     const isSky = ray.distance.greaterThanEqual(SKY_DISTANCE)
     const through = isSky.select(1, this.#depth(ray.distance).negate().exp()).toConst() as Float
-    const dimmed = { front: float(0), transmittance: through, singleScattered: null }
+    const dimmed = {
+      front: float(0),
+      transmittance: through,
+      singleScattered: null,
+      multiplyScattered: vec4(0),
+      distanceAt: () => ray.distance
+    }
     // It shows the sun's sky alone.
-    if (!isSun) return { ...dimmed, multiplyScattered: vec4(0), distanceAt: () => ray.distance }
+    if (!isSun) return dimmed
     const { light: sky, cosView, cosViewLight } = raisedSky(ray)
     const light = this.#color(ray, sky)
     // The sky's light is scattered once in about the part that it is at the camera.

@@ -51,5 +51,5 @@ export const aerialPerspectiveFog = (
   options?: undefined
 ): AerialPerspectiveFogNode =>
   options
-    ? fail('aerialPerspectiveFog', 'no options; add forwardShafts()')
+    ? fail('aerialPerspectiveFog', 'use forwardShafts()')
     : new AerialPerspectiveFogNode(atmosphere)

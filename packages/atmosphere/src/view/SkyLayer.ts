@@ -134,6 +134,6 @@ const EFFECTS = ['eclipse', 'background', 'ground', 'glow', 'below', 'inScatter'
 /** @throws If it is no layer. */
 export function checkLayer(where: string, layer: SkyLayer): void {
   if (!EFFECTS.some(name => typeof layer?.[name] === 'function')) {
-    fail(where, 'layer must be a SkyLayer, such as forwardShafts()', layer)
+    fail(where, 'layer must be a SkyLayer or forwardShafts()', layer)
   }
 }
