@@ -18,7 +18,8 @@ import type { Picture } from '../harness/picture'
 
 const SIZE = { width: 48, height: 32 }
 const PLACE = { longitude: 0.494, latitude: 46.35 }
-const options = { resolution: 16, seaLevel: -Infinity, pageMemory: 20 }
+/** Small pages: a software renderer draws them. */
+const options = { resolution: 8, seaLevel: -Infinity, pageMemory: 10 }
 
 /** A terrain that draws where its pixels are, from the camera [units]. */
 function groundOf(
@@ -49,48 +50,47 @@ function cameraOver(terrain: Terrain, clearance: number, pitch: number): Perspec
   return camera
 }
 
+/** Distance of what a picture shows from the ground that the CPU finds, at most [m]. @throws If there is a hole. */
+function worstError(terrain: Terrain, camera: PerspectiveCamera, picture: Picture): number {
+  const { worldToECEF, ellipsoid } = terrain.atmosphere
+  const point = new Vector3()
+  let worst = 0
+  for (let row = 0; row < SIZE.height; row += 2) {
+    for (let column = 0; column < SIZE.width; column += 2) {
+      const [x, y, z] = picture.at(column, row)
+      expectTrue(z < 0, 'a hole')
+      point.set(x, y, z).applyMatrix4(camera.matrixWorld)
+      const below = terrain.heightBelow(point)
+      worst = Math.max(worst, Math.abs(ellipsoid.heightAt(point.applyMatrix4(worldToECEF)) - below))
+    }
+  }
+  return worst
+}
+
 gpuTest(
-  'draws the ground where the CPU finds it, in kilometres, with a moved origin, and on a small planet',
+  'draws the ground where the CPU finds it, in kilometres with a moved origin, and on a small planet',
   async t => {
     const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
     renderer.highPrecision = true
-    const kilometres = new Atmosphere()
-    kilometres.place(PLACE)
-    kilometres.metersPerUnit = 1000
     const moved = new Atmosphere()
     moved.place(PLACE)
-    moved.worldToECEF.multiply(new Matrix4().makeTranslation(-30_000, 200, 45_000))
+    moved.metersPerUnit = 1000
+    moved.worldToECEF.multiply(new Matrix4().makeTranslation(-30, 0.2, 45))
     const parameters = new AtmosphereParameters({ bottomRadius: 1e6, topRadius: 1.06e6 })
     const small = new Atmosphere({ parameters, ellipsoid: new Ellipsoid(1e6) })
     small.place(PLACE)
-    for (const [label, atmosphere] of Object.entries({ kilometres, moved, small })) {
+    for (const [label, atmosphere] of Object.entries({ moved, small })) {
       const { terrain, scene } = groundOf(atmosphere)
       const metres = atmosphere.metersPerUnit
-      const point = new Vector3()
-      for (const [clearance, pitch, tolerance] of [
-        [2, -90, 0.01],
-        [500, -40, 4]
-      ]) {
-        const camera = cameraOver(terrain, clearance, pitch)
-        terrain.update(renderer, camera, Infinity)
-        const picture = await t.render(renderer, scene, camera, SIZE)
-        let worst = 0
-        for (let row = 0; row < SIZE.height; row += 3) {
-          for (let column = 0; column < SIZE.width; column += 3) {
-            const [x, y, z] = picture.at(column, row)
-            expectTrue(z < 0, `${label}: a hole from ${clearance} m`)
-            point.set(x, y, z).applyMatrix4(camera.matrixWorld)
-            const position = point.clone().applyMatrix4(atmosphere.worldToECEF)
-            const off = atmosphere.ellipsoid.heightAt(position) - terrain.heightBelow(point)
-            worst = Math.max(worst, Math.abs(off))
-          }
-        }
-        t.note(`${label}, ${clearance} m: ${worst.toFixed(4)} m, in units of ${metres} m`)
-        expectTrue(worst < tolerance, `${label}: ${worst} m off from ${clearance} m`)
-      }
+      const camera = cameraOver(terrain, 2, -90)
+      terrain.update(renderer, camera, Infinity)
+      const worst = worstError(terrain, camera, await t.render(renderer, scene, camera, SIZE))
+      t.note(`${label}: ${(1000 * worst).toFixed(1)} mm, in units of ${metres} m`)
+      expectTrue(worst < 0.01, `${label}: ${worst} m off`)
       terrain.dispose()
     }
-  }
+  },
+  { backends: ['webgpu'] }
 )
 
 gpuTest(
@@ -118,19 +118,7 @@ gpuTest(
     const { terrain, scene } = groundOf(atmosphere, grid, { resolution: 12 })
     const camera = cameraOver(terrain, 2, -90)
     terrain.update(renderer, camera, Infinity)
-    const picture = await t.render(renderer, scene, camera, SIZE)
-    const point = new Vector3()
-    let worst = 0
-    for (let row = 0; row < SIZE.height; row += 2) {
-      for (let column = 0; column < SIZE.width; column += 2) {
-        const [x, y, z] = picture.at(column, row)
-        expectTrue(z < 0, 'a hole')
-        point.set(x, y, z).applyMatrix4(camera.matrixWorld)
-        const position = point.clone().applyMatrix4(atmosphere.worldToECEF)
-        const off = atmosphere.ellipsoid.heightAt(position) - terrain.heightBelow(point)
-        worst = Math.max(worst, Math.abs(off))
-      }
-    }
+    const worst = worstError(terrain, camera, await t.render(renderer, scene, camera, SIZE))
     t.note(`${(1000 * worst).toFixed(2)} mm`)
     expectTrue(worst < 0.01, `${worst} m off`)
     terrain.dispose()
@@ -150,7 +138,7 @@ gpuTest(
     wide.position.y = terrain.heightAt(PLACE.longitude, PLACE.latitude) + 4000
     wide.rotation.x = -Math.PI / 2
     wide.updateMatrixWorld()
-    const cameras = [cameraOver(terrain, 2, -60), cameraOver(terrain, 9000, -50), wide]
+    const cameras = [cameraOver(terrain, 2, -80), cameraOver(terrain, 500, -90), wide]
     const alone: Picture[] = []
     for (const camera of cameras) {
       terrain.update(renderer, camera, Infinity)
