@@ -83,7 +83,7 @@ export const Weather: Story = {
 /** A low sun behind mountains: their shadows in the haze, on the ground and on clouds. */
 export const Shafts: Story = {
   name: 'Mountain shadows and clouds',
-  args: { view: 'range', clouds: true, shafts: true, mirror: true, hour: 5.2, exposure: 1.5 }
+  args: { view: 'range', clouds: true, shafts: true, mirror: true, hour: 4.7, exposure: 1.5 }
 }
 
 /** Above the ridges. */
