@@ -34,8 +34,8 @@ const steps = [
     id: 'shafts',
     title: 'Reference shafts',
     script: 'validate',
-    // Every fourth camera, half of them at the quality that shafts have by default.
-    args: ['--check', '--shafts', '--all', '--quality', 'medium,high', '--every', '8'],
+    // Every fifth camera: all scenes are among them.
+    args: ['--check', '--shafts', '--all', '--quality', 'medium,high', '--every', '5'],
     lane: 'reference'
   }
 ]
