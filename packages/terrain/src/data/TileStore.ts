@@ -208,6 +208,7 @@ export class TileStore<T extends HeldTile> {
       this.#absent.add(key)
       // Once, and not of tiles that are missing among others: all is level ground, which says nothing.
       if (this.#version === 0 && this.#absent.size === MANY) {
+        // oxlint-disable-next-line no-console -- A tile must not throw, and there is nobody else to tell.
         console.warn(`${this.#where}: no tile so far, ${error.message}`)
       }
       return null
