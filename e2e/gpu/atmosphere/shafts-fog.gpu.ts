@@ -109,7 +109,7 @@ gpuTest(
   async t => {
     const renderer = await t.createRenderer(size)
     const [elevation, distance] = [25, 8000]
-    const set = stage(renderer, elevation, {}, true)
+    const set = stage(renderer, elevation, { quality: 'reference' }, true)
     const { scene, camera, shafts, atmosphere } = set
     shafts.add({ castInto: () => ({ transmittance: () => () => float(0) }) })
     addBox(scene, [0, 0, -distance - 50], [9000, 4000, 100]).material.color.set(0)
@@ -137,9 +137,12 @@ gpuTest(
       const lossIn = async (fog?: (typeof fogs)[number]): Promise<number> => {
         if (fog) atmosphere.add(fog)
         if (draw === forward) atmosphere.add(shafts)
+        // The post effect takes other layers when it is told to.
+        set.pipeline.needsUpdate = true
         await draw()
         const dark = (await draw()).at(size.width / 2, size.height / 2)[1]
         shafts.enabled = false
+        await draw()
         const lit = (await draw()).at(size.width / 2, size.height / 2)[1]
         shafts.enabled = true
         if (draw === forward) atmosphere.remove(shafts)
