@@ -55,6 +55,26 @@ function checkClouds(png: PNG): string[] {
   return wrong
 }
 
+/** Errors in words: no sky above, or no sunlit ground with slopes below. */
+function checkTerrain(png: PNG): string[] {
+  const wrong: string[] = []
+  const [skyRed, , skyBlue] = at(png, 160, 4)
+  if (!(skyBlue > skyRed && skyBlue > 90)) wrong.push(`there is no sky: ${skyRed}, ${skyBlue}`)
+  const ground: number[] = []
+  for (let y = 120; y < png.height; y += 6) {
+    for (let x = 4; x < png.width; x += 12) {
+      const color = at(png, x, y)
+      ground.push(brightness(color))
+      // Grass, rock and haze: nowhere as blue as the sky.
+      if (color[2] > 1.15 * color[0]) wrong.push(`sky below at ${x}, ${y}: ${color.join(' ')}`)
+    }
+  }
+  const [least, most] = [Math.min(...ground), Math.max(...ground)]
+  if (least < 30) wrong.push(`the ground is dark: ${least}`)
+  if (most < 1.15 * least) wrong.push(`the ground is even: ${least} to ${most}`)
+  return wrong.slice(0, 5)
+}
+
 /** Checks of the frame that a page of the app (`app/PAGE.html`) draws, at 320×180. */
 export interface Expectation {
   /** Faults of a frame, in words. */
@@ -72,6 +92,7 @@ const fibersClock = /THREE\.Clock: This module has been deprecated/
 export const expectations: Record<string, Expectation> = {
   index: { wrongWith: checkQuickStart },
   clouds: { wrongWith: checkClouds },
+  terrain: { wrongWith: checkTerrain, backends: ['webgpu'] },
   // React makes the renderer; what that does without WebGPU the index shows.
   fiber: { wrongWith: checkQuickStart, backends: ['webgpu'], allows: fibersClock },
   fiberClouds: { wrongWith: checkClouds, backends: ['webgpu'], allows: fibersClock },

@@ -15,7 +15,8 @@ const documents = [
 /** Modules of the app's pages that are the first block of a document. */
 const pages: Record<string, string | undefined> = {
   'README.md': 'main.ts',
-  'packages/clouds/README.md': 'clouds.ts'
+  'packages/clouds/README.md': 'clouds.ts',
+  'packages/terrain/README.md': 'terrain.ts'
 }
 
 /**

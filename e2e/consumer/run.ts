@@ -183,11 +183,11 @@ async function look(browser: Browser, origin: string, name: string, backend: Bac
 /** Answers of the packages to a CommonJS module, checked. */
 function requireAll(app: string): string {
   const output = execute('node', ['require.cjs'], app)
-  const { sunHeight, sunDeclination, layers } = JSON.parse(output) as Record<string, number>
+  const { sunHeight, sunDeclination, layers, ground } = JSON.parse(output) as Record<string, number>
   // At noon of the solstice, on the tropic: the sun is overhead.
   const isRight = sunHeight > 0.999 && Math.abs(sunDeclination - 0.409) < 1e-3 && layers === 3
-  if (!isRight) throw new Error(`the packages answer ${output}`)
-  return 'three packages'
+  if (!isRight || !(ground > 0 && ground < 9000)) throw new Error(`the packages answer ${output}`)
+  return 'four packages'
 }
 
 async function lookAtAll(folder: string): Promise<void> {

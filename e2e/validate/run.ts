@@ -40,6 +40,7 @@ const usage = `npm run validate -- [options]
                              --quality NAME of the march, by default high
   --shafts [FILE]            instead: light that boxes take from the air in their shadows, by default
                              e2e/reference/shafts.json; --quality NAME of the shafts, by default high,
+                             or several (medium,high), each in turn,
                              --reversed for a reversed depth buffer, --forward for materials that draw
                              the air themselves, --all for post effect and materials on both backends,
                              --every N for every Nth camera of the file alone
@@ -177,28 +178,30 @@ async function main(): Promise<void> {
     const file = input(values.shafts || undefined, 'shafts.json')
     const air = input(values.sky, 'sky.json')
     if (file === undefined || air === undefined) throw new Error('there is nothing to compare')
-    const quality = choice('quality', values.quality, lightShaftsQualities)
+    const qualities = values.quality
+      .split(',')
+      .map(name => choice('quality', name, lightShaftsQualities))
     const every = Math.max(count('every', values.every), 1)
     const { parameters } = readSkyReference(air)
+    const isReversed = values.reversed
     const ways = (values.all ? backends : [where.backend]).flatMap(backend =>
-      (values.all ? [false, true] : [values.forward]).map(isForward => ({
-        backend,
-        quality,
-        isReversed: values.reversed,
-        isForward
-      }))
+      (values.all ? [false, true] : [values.forward]).flatMap(isForward =>
+        qualities.map(quality => ({ backend, quality, isReversed, isForward }))
+      )
     )
+    const all: object[] = []
     for (const [i, figures] of (await validateShafts(file, parameters, ways, every)).entries()) {
       const { errors, ...shafts } = figures
+      const { backend, quality, isForward } = ways[i]
+      const title = `${isForward ? 'materials' : 'post effect'}, ${backend}, ${quality}`
       const missed = missedShaftGoals(shafts)
       if (values.check && missed.length > 0) process.exitCode = 1
-      if (values.json) print(JSON.stringify({ shafts }, null, 2))
-      else {
-        const { backend, isForward } = ways[i]
-        const title = `${isForward ? 'materials' : 'post effect'}, ${backend}`
-        printShafts(title, { ...shafts, errors }, worst)
-      }
+      all.push({ ...ways[i], ...shafts })
+      if (values.json) for (const goal of missed) console.error(`missed: ${title}: ${goal}`)
+      else printShafts(title, { ...shafts, errors }, worst)
     }
+    // One way as itself, several as a list: one text of JSON.
+    if (values.json) print(JSON.stringify({ shafts: all.length === 1 ? all[0] : all }, null, 2))
     return
   }
 

@@ -2,20 +2,12 @@ import {
   aerialPerspective,
   Atmosphere,
   exposureFor,
-  heightFieldShadow,
+  groundShadow,
   lightShafts,
   terrainShadow
 } from '@welkin/atmosphere'
 import { MountainHeights, Terrain } from '@welkin/terrain'
-import {
-  DataTexture,
-  FloatType,
-  Matrix4,
-  PerspectiveCamera,
-  RedFormat,
-  Scene,
-  Vector3
-} from 'three'
+import { PerspectiveCamera, Scene } from 'three'
 import { shadow } from 'three/tsl'
 import { Air } from './air'
 import { prepareShadow } from './globe/sunShadow'
@@ -44,28 +36,8 @@ const HEIGHT = 250
 const HEADING = 58
 const PITCH = 3
 
-/** Edge of the field whose mountains cast shadows [m], and texels along it. */
-const FIELD = 110_000
-const TEXELS = 256
-
 /** Fewer cells and texels in a still: a software renderer draws it. */
 const STILL = { resolution: 16, pageMemory: 100, pagesPerFrame: 4 }
-
-/** Heights over the plane through the world's origin, of places in rows from south to north [m]. */
-function heightsAbovePlane(terrain: Terrain, altitudeOf: (place: Vector3) => number): DataTexture {
-  const heights = new Float32Array(TEXELS ** 2)
-  const place = new Vector3()
-  for (let i = 0; i < heights.length; i++) {
-    const [east, north] = [i % TEXELS, Math.floor(i / TEXELS)].map(
-      texel => ((texel + 0.5) / TEXELS - 0.5) * FIELD
-    )
-    // The planet falls away from the plane.
-    heights[i] = terrain.heightBelow(place.set(east, 0, -north)) - altitudeOf(place)
-  }
-  const texture = new DataTexture(heights, TEXELS, TEXELS, RedFormat, FloatType)
-  texture.needsUpdate = true
-  return texture
-}
 
 /** Shadows of mountains tens of kilometres away, in the haze and on the ground, where no shadow map reaches. */
 export async function createMountainShadows(
@@ -91,19 +63,11 @@ export async function createMountainShadows(
   prepareShadow(sun)
 
   const ground = new GroundCamera(camera, canvas, terrain, args.frame)
-  const heights = heightsAbovePlane(terrain, place => ground.heightAt(place))
   const { picture, depth, pipeline } = post
   // #region mountain shadows
-  // #shown import { DataTexture, FloatType, RedFormat } from 'three'
-  // #shown const FIELD = 110_000 // side [m]
-  // #shown const metres = new Float32Array(512 * 512) // from the south, above y = 0
-  // #shown const heights = new DataTexture(metres, 512, 512, RedFormat, FloatType)
-  // From the field, whose first texel is in the south-west, to the world: x is east, y up, z south.
-  const toWorld = new Matrix4()
-  toWorld.set(FIELD, 0, 0, -FIELD / 2, 0, 0, 1, 0, 0, -FIELD, 0, FIELD / 2, 0, 0, 0, 1)
-  const hills = heightFieldShadow(heights, toWorld)
-  const shafts = lightShafts(atmosphere, camera, sun).add(hills) // into the air, and onto the ground:
-  Object.assign(sun.shadow, { shadowNode: terrainShadow(hills, sun, shadow(sun)) })
+  const mountains = groundShadow(atmosphere, terrain) // of 100 km about the camera
+  const shafts = lightShafts(atmosphere, camera, sun).add(mountains) // into the air, and onto the ground:
+  Object.assign(sun.shadow, { shadowNode: terrainShadow(mountains, sun, shadow(sun)) })
   // #shown const picture = scenePass.getTextureNode() // without its air
   pipeline.outputNode = aerialPerspective(picture, depth, camera, atmosphere, { shafts })
   // #endregion
@@ -140,7 +104,7 @@ export async function createMountainShadows(
     draw,
     dispose() {
       shafts.dispose()
-      heights.dispose()
+      mountains.dispose()
       terrain.dispose()
       air.dispose()
     }

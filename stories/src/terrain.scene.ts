@@ -1,9 +1,25 @@
-import { Atmosphere, heightFog } from '@welkin/atmosphere'
-import { cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
+import {
+  aerialPerspective,
+  Atmosphere,
+  groundShadow,
+  heightFog,
+  lightShafts,
+  skyEnvironment,
+  terrainShadow
+} from '@welkin/atmosphere'
+import {
+  cloudAirShadow,
+  cloudEnvironment,
+  cloudPreset,
+  clouds,
+  cloudShadow,
+  cloudSkyLight
+} from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
 import { MountainHeights, Terrain, terrainView } from '@welkin/terrain'
 import { PerspectiveCamera, Scene } from 'three'
 import { shadow } from 'three/tsl'
+import type { Node } from 'three/webgpu'
 import { Air } from './air'
 import { prepareShadow } from './globe/sunShadow'
 import {
@@ -86,6 +102,12 @@ export interface TerrainArgs extends RendererArgs, TimeArgs {
   /** Wind over the sea [m/s]. */
   windSpeed: number
   shadows: boolean
+  /** Shadows in the air, and those of mountains far away. */
+  shafts: boolean
+  /** Part of the light that shadowed air loses: 1 is physical. */
+  strength: number
+  /** True for an environment map that water mirrors, with the clouds in it. */
+  mirror: boolean
   /** Broken clouds, which summits reach into. */
   clouds: boolean
   /** Mist over the valleys: extinction at sea level [1/km]. */
@@ -119,7 +141,8 @@ export async function createTerrain(
   const current = { ...args }
   const atmosphere = new Atmosphere()
   atmosphere.place(ORIGIN)
-  const air = new Air(renderer, scene, camera, args.clouds ? 'post' : args.path, atmosphere)
+  const isPost = args.clouds || args.shafts
+  const air = new Air(renderer, scene, camera, isPost ? 'post' : args.path, atmosphere)
   const mist = heightFog({ base: 0, falloff: MIST_FALLOFF, density: 0 })
   if (args.mist > 0) atmosphere.add(mist)
   const options = args.frame ? STILL : {}
@@ -130,19 +153,34 @@ export async function createTerrain(
   terrain.castShadow = terrain.receiveShadow = true
   scene.add(terrain)
   // #endregion
-  prepareShadow(air.sun)
+  const { sun, post } = air
+  prepareShadow(sun)
+  let onGround: Node = shadow(sun)
+  let color: Node | undefined = post?.color
+  // #region terrain shadows
+  const mountains = args.shafts ? groundShadow(atmosphere, terrain) : undefined
+  const shafts = mountains && lightShafts(atmosphere, camera, sun).add(mountains)
+  if (mountains && shafts && post) {
+    onGround = terrainShadow(mountains, sun, onGround)
+    color = aerialPerspective(post.picture, post.depth, camera, atmosphere, { shafts })
+  }
+  // #endregion
   let cloudsNode: CloudsNode | undefined
-  if (args.clouds && air.post !== undefined) {
-    const { color, depth, pipeline } = air.post
+  if (args.clouds && post && color) {
     const layers = cloudPreset('fairWeather')
     layers.at(0).set(CLOUDS)
-    const node = (cloudsNode = clouds(color, depth, camera, atmosphere, layers))
-    pipeline.outputNode = node
-    Object.assign(air.sun.shadow, { shadowNode: cloudShadow(node, shadow(air.sun)) })
-    cloudSkyLight(air.sky, node)
+    color = cloudsNode = clouds(color, post.depth, camera, atmosphere, layers)
+    onGround = cloudShadow(cloudsNode, onGround)
+    cloudSkyLight(air.sky, cloudsNode)
+    shafts?.add(cloudAirShadow(cloudsNode))
   }
+  if (post && color) post.pipeline.outputNode = color
+  Object.assign(sun.shadow, { shadowNode: onGround })
+  const overlay = cloudsNode && cloudEnvironment(cloudsNode)
+  const environment = args.mirror ? skyEnvironment(atmosphere, overlay ? { overlay } : {}) : null
+  scene.environmentNode = environment
   const groundColor = terrain.material.colorNode
-  let color: keyof typeof COLORS = 'ground'
+  let shown: keyof typeof COLORS = 'ground'
 
   const ground = new GroundCamera(camera, canvas, terrain, args.frame)
   let plants: Vegetation | null = null
@@ -160,12 +198,15 @@ export async function createTerrain(
     terrain.material.wireframe = current.wireframe
     terrain.windSpeed = current.windSpeed
     mist.density = current.mist / 1000
+    if (shafts) shafts.strength = current.strength
+    // One frame must show it all; a running scene draws it over fifteen.
+    if (environment && args.frame) environment.needsRedraw = true
     terrain.castShadow = terrain.receiveShadow = current.shadows
     setPlants(current.vegetation)
     ground.tour(current.tour ? TOUR.map(name => VIEWS[name]) : null, TOUR_SECONDS)
-    if (current.color === color) return
-    color = current.color
-    terrain.material.colorNode = color === 'ground' ? groundColor : terrainView(color)
+    if (current.color === shown) return
+    shown = current.color
+    terrain.material.colorNode = shown === 'ground' ? groundColor : terrainView(shown)
     terrain.material.needsUpdate = true
   }
   return groundHandle<Omit<TerrainArgs, 'view'>, typeof VIEWS>({
@@ -184,7 +225,7 @@ export async function createTerrain(
     },
     dispose() {
       setPlants(false)
-      cloudsNode?.dispose()
+      for (const owned of [shafts, mountains, environment, cloudsNode]) owned?.dispose()
     }
   })
 }

@@ -1,6 +1,6 @@
 import type { Meta, StoryObj } from '@storybook/html-vite'
 import { mount } from './mount'
-import { choiceOf, rendererArgTypes, timeArgTypes } from './storyArgs'
+import { choiceOf, rendererArgTypes, shaftArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 import { COLORS, createTerrain, VIEWS } from './terrain.scene'
 import type { TerrainArgs } from './terrain.scene'
@@ -10,7 +10,7 @@ const meta: Meta<TerrainArgs> = {
   render: mount(
     createTerrain,
     storyCode(['terrain.scene.ts', 'terrain']),
-    ({ clouds, mist }: TerrainArgs) => [clouds, mist > 0].join()
+    ({ clouds, mist, shafts, mirror }: TerrainArgs) => [clouds, mist > 0, shafts, mirror].join()
   ),
   argTypes: {
     view: {
@@ -22,6 +22,17 @@ const meta: Meta<TerrainArgs> = {
     tour: { name: 'Shore, summit, orbit', control: 'boolean' },
     windSpeed: { name: 'Wind [m/s]', control: { type: 'range', min: 0, max: 30, step: 0.5 } },
     shadows: { name: 'Shadows', control: 'boolean' },
+    shafts: {
+      name: 'Light shafts, far shadows',
+      control: 'boolean',
+      description: 'Shadows of mountains beyond all shadow maps, on the ground and in the air'
+    },
+    strength: shaftArgTypes.strength,
+    mirror: {
+      name: 'Water mirrors clouds',
+      control: 'boolean',
+      description: 'The scene has an environment map, in place of the clear sky'
+    },
     clouds: { name: 'Clouds', control: 'boolean' },
     mist: { name: 'Mist [1/km]', control: { type: 'range', min: 0, max: 6, step: 0.1 } },
     vegetation: { name: 'Grass, flowers, trees', control: 'boolean' },
@@ -35,6 +46,9 @@ const meta: Meta<TerrainArgs> = {
     tour: false,
     windSpeed: 7,
     shadows: true,
+    shafts: false,
+    strength: 1,
+    mirror: false,
     clouds: false,
     mist: 0,
     vegetation: false,
@@ -64,6 +78,12 @@ export const Take: Story = { name: 'Shore to orbit', args: { view: 'shore', tour
 export const Weather: Story = {
   name: 'Clouds and mist',
   args: { view: 'range', clouds: true, mist: 1.5, hour: 7 }
+}
+
+/** A low sun behind mountains: their shadows in the haze, on the ground and on clouds. */
+export const Shafts: Story = {
+  name: 'Mountain shadows and clouds',
+  args: { view: 'range', clouds: true, shafts: true, mirror: true, hour: 4.7, exposure: 1.5 }
 }
 
 /** Above the ridges. */

@@ -1,6 +1,8 @@
 import { defineConfig } from 'vite'
 
-const pages = ['index', 'geo', 'clouds', 'fiber', 'fiberClouds'].map(name => `${name}.html`)
+const pages = ['index', 'geo', 'clouds', 'terrain', 'fiber', 'fiberClouds'].map(
+  name => `${name}.html`
+)
 
 export default defineConfig({
   // React's development build: StrictMode mounts twice, and React reports what is wrong.

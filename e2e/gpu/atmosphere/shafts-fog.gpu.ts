@@ -105,6 +105,66 @@ gpuTest('takes what height fog scatters once from its light where all is dark', 
 })
 
 gpuTest(
+  'takes from moonlit air behind fog what the fog lets through',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const [elevation, distance] = [25, 8000]
+    const set = stage(renderer, elevation, { quality: 'reference' }, true)
+    const { scene, camera, shafts, atmosphere } = set
+    shafts.add({ castInto: () => ({ transmittance: () => () => float(0) }) })
+    addBox(scene, [0, 0, -distance - 50], [9000, 4000, 100]).material.color.set(0)
+    camera.fov = 1
+    camera.updateProjectionMatrix()
+    const forward = async (): Promise<Picture> => {
+      await nextFrame()
+      return drawForward(renderer, scene, camera, atmosphere)
+    }
+    const fogs = [
+      distanceFog({ density: 1 / distance }),
+      heightFog({ density: 2e-4, falloff: 300 })
+    ] as const
+    // As in the test above, by how much the fog dims what is behind its middle.
+    const air = parameters()
+    const light = (elevation * Math.PI) / 180
+    const radius = air.bottomRadius + 2
+    const ray = { radius, cosView: 0, cosLight: Math.sin(light), cosViewLight: Math.cos(light) }
+    const layer = { density: 2e-4, falloff: 300, base: 0 }
+    const depth = twin.fogDepth(layer, radius, 0, air.bottomRadius, distance)
+    const middle = (0.5 * Math.min(depth, 1)) / (layer.density * Math.exp(-2 / layer.falloff))
+    const [before, all] = [middle, distance].map(far => inScatter(air, null, ray, far)[1])
+    const left = [Math.exp(-1), (before + Math.exp(-depth) * (all - before)) / all]
+    for (const draw of [set.draw, forward]) {
+      const lossIn = async (fog?: (typeof fogs)[number]): Promise<number> => {
+        if (fog) atmosphere.add(fog)
+        if (draw === forward) atmosphere.add(shafts)
+        // The post effect takes other layers when it is told to.
+        set.pipeline.needsUpdate = true
+        await draw()
+        const dark = (await draw()).at(size.width / 2, size.height / 2)[1]
+        shafts.enabled = false
+        await draw()
+        const lit = (await draw()).at(size.width / 2, size.height / 2)[1]
+        shafts.enabled = true
+        if (draw === forward) atmosphere.remove(shafts)
+        if (fog) atmosphere.remove(fog)
+        expectTrue(dark > 0, 'light scattered more often stays')
+        return lit - dark
+      }
+      const clear = await lossIn()
+      expectTrue(clear > 0, 'moonlight is lost')
+      // Materials take it from the same shader: one fog shows that they do.
+      for (const [i, fog] of fogs.slice(0, draw === forward ? 1 : 2).entries()) {
+        const part = (await lossIn(fog)) / clear
+        t.note(`${fog.constructor.name}: ${part.toFixed(4)} of ${left[i].toFixed(4)}`)
+        expectClose(part, left[i], { relative: 0.02 }, fog.constructor.name)
+      }
+    }
+    set.dispose()
+  },
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
   'has materials draw shafts in fog as the post effect does',
   async t => {
     const renderer = await t.createRenderer(size)

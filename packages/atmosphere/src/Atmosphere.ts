@@ -216,7 +216,7 @@ export class Atmosphere extends ScenePlanet {
     }
     const all = [...this.#layers, ...layers]
     const twice = all.find((layer, i) => all.indexOf(layer) < i)
-    if (twice) fail('Atmosphere.add', 'layer must not be in the sky already', twice)
+    if (twice) fail('Atmosphere.add', 'layer is in the sky already', twice)
     for (const layer of layers) layer.attach?.(this)
     this.#layers.push(...layers)
     this.#layersVersion++

@@ -52,7 +52,7 @@ describe('Atmosphere', () => {
     const atmosphere = new Atmosphere()
     for (const wrong of [null, undefined, 'abc', 3, heightFog, [heightFog()]]) {
       expect(() => atmosphere.add(heightFog(), wrong as never)).toThrow(
-        'Atmosphere.add: layer must be a SkyLayer, such as moon() or heightFog(), got '
+        'Atmosphere.add: layer must be a SkyLayer or forwardShafts(), got '
       )
     }
     expect(() => atmosphere.add(sunFlare(), moon().attach(new Atmosphere()))).toThrow(

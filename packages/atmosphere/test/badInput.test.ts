@@ -118,19 +118,23 @@ throwsEach('atmospheres, their parameters and nodes', [
     () => (atmosphere.sunDirection = wrong([0, 1, 0]))
   ],
   [
-    'Atmosphere.add: layer must be a SkyLayer, such as moon() or heightFog(), got a Mesh',
+    'aerialPerspectiveFog: use forwardShafts()',
+    () => aerialPerspectiveFog(atmosphere, wrong({ shafts: null }))
+  ],
+  [
+    'Atmosphere.add: layer must be a SkyLayer or forwardShafts(), got a Mesh',
     () => atmosphere.add(wrong(new Mesh()))
   ],
   [
-    'Atmosphere.add: layer must be a SkyLayer, such as moon() or heightFog(), got [undefined]',
+    'Atmosphere.add: layer must be a SkyLayer or forwardShafts(), got [undefined]',
     () => atmosphere.add(wrong([undefined]))
   ],
   [
-    'Atmosphere.add: layer must not be in the sky already, got a MilkyWay',
+    'Atmosphere.add: layer is in the sky already, got a MilkyWay',
     () => new Atmosphere().add(night.way, night.way)
   ],
   [
-    'Atmosphere.add: layer must not be in the sky already, got an Airglow',
+    'Atmosphere.add: layer is in the sky already, got an Airglow',
     () => new Atmosphere().add(night.glow).add(night.way, night.glow)
   ],
   [
@@ -149,12 +153,9 @@ throwsEach('atmospheres, their parameters and nodes', [
     'SkyEnvironmentNode: angle must be positive and finite, got 0',
     () => (skyEnvironment(atmosphere).angle = 0)
   ],
+  ['skyBackground: set it as scene.backgroundNode', () => skyBackground(atmosphere).isCubeTexture],
   [
-    'skyBackground: set it as scene.backgroundNode, not as scene.background',
-    () => skyBackground(atmosphere).isCubeTexture
-  ],
-  [
-    'aerialPerspectiveFog: set it as scene.fogNode, not as scene.fog',
+    'aerialPerspectiveFog: set it as scene.fogNode',
     () => aerialPerspectiveFog(atmosphere).isFogExp2
   ],
   [

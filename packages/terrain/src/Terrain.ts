@@ -1,26 +1,16 @@
 import { Matrix4, Quaternion, Vector3 } from 'three'
-import type { Camera, Intersection, Raycaster, Scene, Texture } from 'three'
+import type { Camera, Scene, Texture } from 'three'
 import type { Renderer } from 'three/webgpu'
 import { checkAtmosphere, checkRange, withDefaults, type Atmosphere } from '@welkin/atmosphere'
-import {
-  checkDirection,
-  checkFinite,
-  checkNonNegative,
-  checkVector,
-  fail,
-  setOptions
-} from '@welkin/geo'
-import type { HeightSample, HeightSource } from './heights/HeightSource'
+import { checkNonNegative, fail, setOptions } from '@welkin/geo'
+import type { HeightSource } from './heights/HeightSource'
 import { CAPACITY, PagedTiles } from './pages/PagedTiles'
 import type { PageImages } from './pages/PageImages'
 import type { PageSource } from './pages/PageSource'
 import { grainTexture } from './surface/grainTexture'
-import { distanceToGround } from './rays/distanceToGround'
-import { groundNormal } from './rays/Ground'
-import { raycastGround } from './rays/raycastGround'
+import { GroundMesh } from './rays/GroundMesh'
 import type { GroundMaps } from './surface/maps/GroundMaps'
 import type { GroundMask } from './surface/maps/GroundMask'
-import { SeaMesh } from './surface/SeaMesh'
 import { terrainMaterial } from './surface/terrainMaterial'
 import {
   checkFixed,
@@ -46,11 +36,10 @@ const SHALLOW = 1
 
 /** Height of "no ceiling", above all ground [m]. */
 const NO_CEILING = 1e9
-const vectors = Array.from({ length: 7 }, () => new Vector3())
-const [positionWorld, positionECEF, subpoint, reference, pole, up, scale] = vectors
+const vectors = Array.from({ length: 6 }, () => new Vector3())
+const [positionWorld, positionECEF, subpoint, reference, pole, scale] = vectors
 const quaternion = new Quaternion()
 const matrix = new Matrix4()
-const sample: HeightSample = { height: 0, gradient: new Vector3() }
 
 /**
  * Ground of a whole planet, from a pebble at one's feet to the globe: one mesh and one material, lit, shadowed and
@@ -67,11 +56,7 @@ const sample: HeightSample = { height: 0, gradient: new Vector3() }
  *
  * @see Strugar 2010, "Continuous distance-dependent level of detail for rendering heightmaps", §3
  */
-export class Terrain extends SeaMesh {
-  /** Shared, not owned. */
-  declare readonly atmosphere: Atmosphere
-  /** Heights of the ground; shared, not owned. */
-  declare readonly source: HeightSource | PageSource
+export class Terrain extends GroundMesh {
   /** Imagery of the ground; shared, not owned; null for procedural colours. */
   declare readonly imagery: PageImages | null
   /** Texture maps of the ground's materials; shared, not owned; null for procedural ones. */
@@ -105,7 +90,7 @@ export class Terrain extends SeaMesh {
     checkFixed('Terrain', all)
     const figure = figureOf(atmosphere)
     const uniforms = new TerrainUniforms(figure)
-    const tiles = new PagedTiles(source, figure, all)
+    const tiles = new PagedTiles(source, figure, all, () => this.onChange?.())
     const grain = grainTexture()
     const material = terrainMaterial(
       atmosphere,
@@ -182,69 +167,28 @@ export class Terrain extends SeaMesh {
     return this.#tiles.isFull
   }
 
+  /**
+   * Called when another drawing would show more, for renderers that draw on demand: data have arrived, or what failed is asked
+   * for again, 5 s later; and within a drawing as long as pages are being drawn or fade in.
+   */
+  onChange: (() => void) | null = null
+
+  /** Lines that name the sources of heights and imagery: yours to show. */
+  get attributions(): string[] {
+    const lines = [this.source, this.imagery].flatMap(each => each?.attribution || [])
+    return [...new Set(lines)]
+  }
+
   /** Pages: how many tiles have one, how many there is room for, how many were drawn so far, and memory on the GPU [bytes]. */
   get pages(): { count: number; capacity: number; drawn: number; bytes: number } {
     const { count, drawn, atlas } = this.#tiles.pages
     return { count, capacity: atlas.capacity, drawn, bytes: atlas.bytes }
   }
 
-  /** Counts up whenever heights of the ground have changed, as when some have arrived. */
-  get version(): number {
-    return this.source.version ?? 0
-  }
-
   /** Number of tiles chosen last, and of those in view. */
   get tileCount(): { chosen: number; inView: number } {
     const { tiles, inView } = this.#tiles.selection
     return { chosen: tiles.length, inView }
-  }
-
-  /**
-   * Height of the ground, or of the sea over it, above the ellipsoid: that of the surface as drawn about a
-   * viewer who stands there [m].
-   *
-   * @param longitude - East of the prime meridian [°].
-   * @param latitude - Geodetic, in [−90, 90] [°].
-   * @throws If one is not finite or out of its range, or the world is flat: ask `heightBelow` there.
-   */
-  heightAt(longitude: number, latitude: number): number {
-    return this.#heightAtSubpoint(this.#subpointAt('heightAt', longitude, latitude))
-  }
-
-  /**
-   * Unit normal of the surface in ECEF: that of a pixel near the viewer, without stones and tufts.
-   *
-   * @param longitude - East of the prime meridian [°].
-   * @param latitude - Geodetic, in [−90, 90] [°].
-   * @throws If one is not finite or out of its range.
-   */
-  normalAt(longitude: number, latitude: number, target: Vector3 = new Vector3()): Vector3 {
-    const position = this.#subpointAt('normalAt', longitude, latitude)
-    return groundNormal(this, position, target)
-  }
-
-  /**
-   * Height of the surface below a point of the world, above the ellipsoid [m].
-   *
-   * @param position - World [units].
-   * @throws If a component is not finite.
-   */
-  heightBelow(position: Vector3): number {
-    checkVector('Terrain.heightBelow', 'position', position)
-    subpoint.copy(position).applyMatrix4(worldToGround(this.atmosphere))
-    return this.#heightAtSubpoint(this.#figure.footPoint(subpoint, subpoint))
-  }
-
-  #subpointAt(method: string, longitude: number, latitude: number): Vector3 {
-    checkFinite(`Terrain.${method}`, 'longitude', longitude)
-    checkRange(`Terrain.${method}`, 'latitude', latitude, -90, 90)
-    if (isFlat(this.#figure)) fail(`Terrain.${method}`, 'a flat world has no longitudes')
-    return this.atmosphere.ellipsoid.geodeticToECEF({ longitude, latitude }, subpoint)
-  }
-
-  /** Height of the surface at a point of the ellipsoid [m]. */
-  #heightAtSubpoint(position: Vector3): number {
-    return Math.max(this.source.sampleAt(position, sample).height, this.seaLevel)
   }
 
   /**
@@ -263,12 +207,11 @@ export class Terrain extends SeaMesh {
    */
   update(renderer: Renderer, camera: Camera, most?: number): void {
     const figure = this.#figure
-    if (figureOf(this.atmosphere) !== figure)
-      fail('Terrain', 'atmosphere must stay flat or round, as it was at first')
+    if (figureOf(this.atmosphere) !== figure) fail('Terrain', 'atmosphere must stay flat or round')
     const fromWorld = worldToGround(this.atmosphere)
     positionWorld.setFromMatrixPosition(camera.matrixWorld)
     positionECEF.copy(positionWorld).applyMatrix4(fromWorld)
-    const ground = this.#heightAtSubpoint(figure.footPoint(positionECEF, subpoint))
+    const ground = this.surfaceAt(figure.footPoint(positionECEF, subpoint))
     const above = figure.heightAt(positionECEF) - ground
     const viewer = viewerOf(
       camera,
@@ -305,34 +248,6 @@ export class Terrain extends SeaMesh {
       this.update(renderer as Renderer, camera)
     const { chosen, inView } = this.tileCount
     this.geometry.instanceCount = isShadow ? chosen : inView
-  }
-
-  /**
-   * Point where a ray enters the ground or the sea, with all detail that the source has.
-   *
-   * @param originECEF - Start of the ray [m]; in a flat world along the world's axes, as is the result.
-   * @param directionECEF - Any length but 0.
-   * @returns ECEF [m], or null if the ray misses.
-   * @throws If a component is not finite or the direction is zero.
-   */
-  intersectRay(
-    originECEF: Vector3,
-    directionECEF: Vector3,
-    target: Vector3 = new Vector3()
-  ): Vector3 | null {
-    checkVector('Terrain.intersectRay', 'originECEF', originECEF)
-    checkDirection('Terrain.intersectRay', 'directionECEF', directionECEF)
-    up.copy(directionECEF).normalize()
-    const distance = distanceToGround(this, originECEF, up, 0, Infinity)
-    return distance === null ? null : target.copy(originECEF).addScaledVector(up, distance)
-  }
-
-  /**
-   * Hit of a ray of three's `Raycaster` on the ground or the sea: to 1 mm, wherever the camera is. Its normal is in the
-   * terrain's own axes, those of ECEF; it has no face.
-   */
-  override raycast(raycaster: Raycaster, intersects: Intersection[]): void {
-    raycastGround(this, raycaster, intersects)
   }
 
   /** Frees geometry, material and pages; atmosphere and source are shared. */

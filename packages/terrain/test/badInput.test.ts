@@ -23,7 +23,7 @@ const painted: GroundMaskOptions = { materials: ['sand'], west: 0, east: 1, sout
 const cases: [message: string, call: () => unknown][] = [
   ['Terrain: atmosphere must be an Atmosphere', () => new Terrain(wrong({}), heights)],
   [
-    'Terrain.heightAt: a flat world has no longitudes',
+    'Terrain.heightAt: use heightBelow in a flat world',
     () => new Terrain(new Atmosphere({ flat: true }), heights, { resolution: 4 }).heightAt(0, 0)
   ],
   ['Terrain: source must be a HeightSource', () => new Terrain(atmosphere, wrong({}))],

@@ -4,6 +4,7 @@ import { Raycaster, Vector3 } from 'three'
 import { describe, expect, it } from 'vitest'
 import { GridHeights } from '../src/data/GridHeights'
 import type { HeightSource } from '../src/heights/HeightSource'
+import { MountainHeights } from '../src/heights/MountainHeights'
 import { Terrain } from '../src/Terrain'
 import { distanceTo, noTiles, TileTree } from '../src/tiles/TileTree'
 import { FlatFigure } from '../src/tiles/cpu/figure'
@@ -107,6 +108,19 @@ describe('tiles of a plane', () => {
     expect(area / (2 ** 21) ** 2).toBeCloseTo(1, 9)
     expect(new Set(tiles.map(({ level }) => level)).size).toBeGreaterThan(8)
   })
+})
+
+it('has normals below points of the world, as a round world has by longitude and latitude', () => {
+  const normal = terrain.normalBelow(new Vector3(500, 900, 20))
+  expect(normal.distanceTo(new Vector3(-0.2, 1, 0.1).normalize())).toBeLessThan(1e-12)
+  expect(() => terrain.normalAt(0, 0)).toThrow('Terrain.normalAt: use normalBelow in a flat world')
+  expect(() => terrain.normalBelow(new Vector3(NaN, 0, 0))).toThrow('Terrain.normalBelow: position')
+  const round = new Atmosphere()
+  const planet = new Terrain(round, new MountainHeights(), { resolution: 4 })
+  const place = round.ellipsoid.geodeticToECEF({ longitude: 11, latitude: 47, height: 9000 })
+  const below = planet.normalBelow(place.applyMatrix4(round.worldToECEF.clone().invert()))
+  expect(below.distanceTo(planet.normalAt(11, 47))).toBeLessThan(1e-9)
+  planet.dispose()
 })
 
 it('a grid in metres lies to the east along X and to the south along Z', () => {

@@ -1,7 +1,7 @@
 import { Ellipsoid } from '@welkin/geo'
 import { Matrix4, PerspectiveCamera, Vector3 } from 'three'
 import type { Renderer } from 'three/webgpu'
-import { expect, it, vi } from 'vitest'
+import { afterAll, beforeAll, expect, it, vi } from 'vitest'
 import { HeightPages } from '../src/pages/HeightPages'
 import { PageBaker } from '../src/pages/PageBaker'
 import { PagedTiles } from '../src/pages/PagedTiles'
@@ -10,6 +10,9 @@ import type { Tile } from '../src/tiles/Tile'
 import { DEFAULTS } from '../src/TerrainOptions'
 import { viewerOf, type Viewer } from '../src/tiles/cpu/viewer'
 import { randomNumbers } from './randomNumbers'
+
+beforeAll(() => void vi.useFakeTimers())
+afterAll(() => void vi.useRealTimers())
 
 const earth = Ellipsoid.WGS84
 const options = { ...DEFAULTS, resolution: 4, detail: 1.5 }
@@ -66,7 +69,7 @@ class SlowLoader implements PageSource {
   async nextFrame(): Promise<void> {
     for (const settle of this.#due.get(this.#frame) ?? []) settle()
     this.#due.delete(this.#frame++)
-    await new Promise(resolve => setTimeout(resolve))
+    await vi.advanceTimersByTimeAsync(17)
   }
 }
 

@@ -75,18 +75,21 @@ function setUp() {
 }
 
 it('draws all pages without pictures while a server is down', async () => {
+  vi.useFakeTimers()
   const { imagery, tiles, look } = setUp()
   imagery.isDown = true
   await look(tiles, 20)
   expect(tiles.length).toBe(24)
   expect(tiles.filter(({ slot }) => slot < 0)).toEqual([])
   imagery.isDown = false
-  await look(tiles, 301)
+  await vi.advanceTimersByTimeAsync(5000)
+  await look(tiles, 1)
   for (let round = 0; round < 20; round++) {
     imagery.arrive()
     await look(tiles, 20)
   }
   expect(new Set(tiles.map(tile => shown.get(tile)))).toEqual(new Set([2]))
+  vi.useRealTimers()
 })
 
 it('gives a page that was drawn before its picture came, and was out of view then, the picture when it is seen again', async () => {

@@ -1,7 +1,7 @@
 import { Ellipsoid } from '@welkin/geo'
 import { Matrix4, PerspectiveCamera } from 'three'
 import type { Renderer } from 'three/webgpu'
-import { beforeEach, expect, it, vi } from 'vitest'
+import { afterEach, beforeEach, expect, it, vi } from 'vitest'
 import { HeightPages } from '../src/pages/HeightPages'
 import { PageBaker } from '../src/pages/PageBaker'
 import { PagedTiles } from '../src/pages/PagedTiles'
@@ -23,6 +23,7 @@ vi.spyOn(PageBaker.prototype, 'bake').mockImplementation((_, tile, slot, heights
 beforeEach(() => {
   drawn.length = 0
 })
+afterEach(() => void vi.useRealTimers())
 
 const rendererOf = () => ({ isRenderer: true, info: { frame: 0 } })
 const asRenderer = (renderer: ReturnType<typeof rendererOf>) => renderer as unknown as Renderer
@@ -86,13 +87,55 @@ it('asks for the heights of a whole face again when they failed', async () => {
       return flat(side, 700)
     })
   )
+  vi.useFakeTimers()
   const renderer = asRenderer(rendererOf())
   pages.begin(renderer, tree.roots, 0)
   isBroken = false
-  pages.begin(renderer, tree.roots, 299)
+  vi.advanceTimersByTime(4999)
+  pages.begin(renderer, tree.roots, 500)
   expect(drawn.length).toBe(6)
-  pages.begin(renderer, tree.roots, 300)
+  vi.advanceTimersByTime(1)
+  pages.begin(renderer, tree.roots, 501)
   expect(drawn.slice(6).map(({ first }) => first)).toEqual(Array(6).fill(700))
+})
+
+it('tells who draws on demand each time that another drawing would show more, and no more once it is full', async () => {
+  let arrive: (() => void)[] = []
+  let failures = 0
+  const source = sourceOf(({ side, level }) => {
+    if (level === 1 && failures++ === 0) return Promise.reject(new Error('no network'))
+    return new Promise(resolve => arrive.push(() => resolve(flat(side, 700))))
+  })
+  const renderer = rendererOf()
+  const viewer = viewerAt(0, 2e6)
+  let asked = 1
+  const few = { ...DEFAULTS, resolution: RESOLUTION }
+  const tiles = new PagedTiles(source, earth, few, () => void asked++)
+  vi.useFakeTimers()
+  /** Draws as long as it is asked for. */
+  const draw = async (): Promise<number> => {
+    let frames = 0
+    for (; asked > 0 && frames < 1000; frames++) {
+      asked = 0
+      renderer.info.frame++
+      tiles.update(asRenderer(renderer), viewer)
+      await vi.advanceTimersByTimeAsync(0)
+    }
+    return frames
+  }
+  for (let round = 0; round < 50 && !(tiles.isFull && arrive.length === 0); round++) {
+    expect(await draw()).toBeLessThan(200)
+    const there = arrive
+    arrive = []
+    for (const each of there) each()
+    await vi.advanceTimersByTimeAsync(there.length > 0 ? 0 : 5000)
+  }
+  expect(failures).toBeGreaterThan(1)
+  expect(tiles.isFull).toBe(true)
+  await draw()
+  expect(asked).toBe(0)
+  await vi.advanceTimersByTimeAsync(60_000)
+  expect(asked).toBe(0)
 })
 
 it('bounds tiles by the heights of pages, not by what is known when the tile is made', () => {

@@ -1,6 +1,6 @@
 import fc from 'fast-check'
 import { Ellipsoid } from '@welkin/geo'
-import { Matrix4, PerspectiveCamera, Vector3 } from 'three'
+import { Matrix4, OrthographicCamera, PerspectiveCamera, Vector3 } from 'three'
 import { expect, it } from 'vitest'
 import { MountainHeights } from '../src/heights/MountainHeights'
 import { viewerOf, type Viewer } from '../src/tiles/cpu/viewer'
@@ -52,6 +52,25 @@ function pointOf(face: number, x: number, y: number): Vector3 {
   outward.addScaledVector(first, x).addScaledVector(second, y)
   return cubeToEllipsoid(outward, earth.radii, outward)
 }
+
+it('has ground in all of an orthographic view, beyond the horizon of its camera too', () => {
+  // From 300 m, 4,000 km across: at its edges the ground is 300 km lower.
+  const position = earth.geodeticToECEF({ longitude: 11, latitude: 47, height: 300 })
+  const camera = new OrthographicCamera(-2e6, 2e6, 1.5e6, -1.5e6, 1, 1e8)
+  camera.quaternion.setFromRotationMatrix(earth.localYUpFrame(position, new Matrix4()))
+  camera.rotateX(-Math.PI / 2)
+  camera.position.copy(position)
+  camera.updateMatrixWorld()
+  const viewer = viewerOf(camera, position, 300, source.lowest, new Matrix4(), earth, 0)
+  const tiles = select(viewer)
+  const up = earth.surfaceNormal(position)
+  for (const longitude of [-10, 0, 11, 22, 30]) {
+    const place = earth.geodeticToECEF({ longitude, latitude: 47 })
+    expect(place.clone().sub(position).dot(up)).toBeLessThan(0)
+    const has = tiles.some(({ edges }) => edges.every(edge => edge.dot(place) <= 1e-6))
+    expect([longitude, has]).toEqual([longitude, true])
+  }
+})
 
 it('covers every point of the planet once', () => {
   fc.assert(

@@ -118,8 +118,19 @@ export class DistanceFog implements SkyLayer {
     return { depth: depth, radiance: light }
   }
 
-  shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium | null {
-    if (!isSun) return null
+  shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium {
+    // The sky has no such fog.
+    const isSky = ray.distance.greaterThanEqual(SKY_DISTANCE)
+    const through = isSky.select(1, this.#depth(ray.distance).negate().exp()).toConst() as Float
+    const dimmed = {
+      front: float(0),
+      transmittance: through,
+      singleScattered: null,
+      multiplyScattered: vec4(0),
+      distanceAt: () => ray.distance
+    }
+    // It shows the sun's sky alone.
+    if (!isSun) return dimmed
     const { light: sky, cosView, cosViewLight } = raisedSky(ray)
     const light = this.#color(ray, sky)
     // The sky's light is scattered once in about the part that it is at the camera.
@@ -132,14 +143,10 @@ export class DistanceFog implements SkyLayer {
       return scatteredRadiance(air.uniforms, parts, cosViewLight).toConst()
     })
     const part = direct.div(direct.add(diffuse).max(1e-30)).toConst()
-    // The sky has no such fog.
-    const isSky = ray.distance.greaterThanEqual(SKY_DISTANCE)
-    const through = isSky.select(1, this.#depth(ray.distance).negate().exp()).toConst() as Float
     const added = light.mul(through.oneMinus()).toConst()
     const inverse = this.#density.max(1e-12).reciprocal().toConst()
     return {
-      front: float(0),
-      transmittance: through,
+      ...dimmed,
       singleScattered: added.mul(part).toConst(),
       multiplyScattered: added.mul(part.oneMinus()).toConst(),
       distanceAt(share) {

@@ -190,29 +190,31 @@ export class HeightFog implements SkyLayer {
     return { depth: depth, radiance: light }
   }
 
-  shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium | null {
-    if (!isSun && !this.sources.includes(ray.view.source)) return null
+  shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium {
     const { source, viewpoint } = ray.view
     const isSky = ray.distance.greaterThanEqual(SKY_DISTANCE)
     const all = rayLimits(viewpoint, ray.cosView).length
     const distance = isSky.select(all, ray.distance).toConst() as Float
     const fog = this.#along({ ...ray, distance })
+    const isLit = isSun || this.sources.includes(source)
     const [once, often] = [vec4(0).toVar(), vec4(0).toVar()]
-    If(fog.through.lessThan(1), () => {
-      const { cosLight } = viewpoint
-      // Tables are drawn for the sun's view.
-      const light = isSun
-        ? this.#lightIn(ray.view, 0, source, fog.middle, cosLight)
-        : this.#lightAt(ray.view.air, source, fog.middle, cosLight)
-      const scattered = this.#scattered(light, ray, cosLight)
-      once.assign(scattered.once.mul(fog.seen))
-      often.assign(scattered.often.mul(fog.seen))
-    })
+    if (isLit) {
+      If(fog.through.lessThan(1), () => {
+        const { cosLight } = viewpoint
+        // Tables are drawn for the sun's view.
+        const light = isSun
+          ? this.#lightIn(ray.view, 0, source, fog.middle, cosLight)
+          : this.#lightAt(ray.view.air, source, fog.middle, cosLight)
+        const scattered = this.#scattered(light, ray, cosLight)
+        once.assign(scattered.once.mul(fog.seen))
+        often.assign(scattered.often.mul(fog.seen))
+      })
+    }
     const { through, depthAt } = fog
     return {
       front: fog.middleDistance,
       transmittance: through,
-      singleScattered: once,
+      singleScattered: isLit ? once : null,
       multiplyScattered: often,
       distanceAt: part => depthAt(part.mul(through.oneMinus()).oneMinus().log().negate())
     }

@@ -8,6 +8,7 @@ import type { Float } from '../tsl-types'
 import type { MeshShadows } from '../view/AirShadows'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
 import type { LayerRay, SkyLayer } from '../view/SkyLayer'
+import { screenRay } from '../view/tsl/screenRay'
 import { viewNodes } from '../view/ViewNodes'
 import { LightShafts, type LightShaftsOptions } from './LightShafts'
 import { MeshShafts } from './MeshShafts'
@@ -65,8 +66,11 @@ export class ForwardShafts extends LightShafts {
 
   /** True if each fragment marches: rays of orthographic cameras do not meet in the camera. */
   private get isMarched(): boolean {
-    const { isOrthographicCamera } = this.camera as Partial<OrthographicCamera>
-    return this.quality === 'reference' || isOrthographicCamera === true
+    return this.quality === 'reference' || this.isOrthographic
+  }
+
+  private get isOrthographic(): boolean {
+    return (this.camera as Partial<OrthographicCamera>).isOrthographicCamera === true
   }
 
   /** Layers before this one: not what comes later, which dims what is left. */
@@ -119,7 +123,8 @@ export class ForwardShafts extends LightShafts {
         return taken.mul(to.distance ? this.#volume.lostTo(to.distance) : this.#volume.lostToSky())
       }
       const cosViewLight = direction.dot(lit.lightDirection).toConst() as Float
-      const ray = { direction, cosView, cosViewLight, distance: distanceOf(to) }
+      const start = this.isOrthographic ? lit.toMapped(screenRay().origin) : undefined
+      const ray = { direction, cosView, cosViewLight, distance: distanceOf(to), start }
       const pixel = screenCoordinate.xy.floor()
       return taken.mul(lostLight(lit, this.shadowedAir, ray, this.steps, staggered(pixel)))
     })

@@ -9,7 +9,7 @@ import {
   Vector3
 } from 'three'
 import type { Camera } from 'three'
-import { checkPositive, fail } from '@welkin/geo'
+import { checkPositive, fail, type Ellipsoid } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkRange, withDefaults } from '../check'
 import { checkAtmosphere } from '../view/ViewNodes'
@@ -62,6 +62,16 @@ const _subpoint = new Vector3()
 const _place = new Vector3()
 const _world = new Vector3()
 const _toWorld = new Matrix4()
+const _scaling = new Matrix4()
+
+/** Plane of a flat world, in place of an ellipsoid: y is height. */
+const PLANE: Pick<Ellipsoid, 'footPoint' | 'heightAt' | 'eastNorthUpFrame'> = {
+  footPoint: ({ x, z }, target = new Vector3()) => target.set(x, 0, z),
+  heightAt: ({ y }) => y,
+  // East is x, and north −z.
+  eastNorthUpFrame: ({ x, z }, target = new Matrix4()) =>
+    target.set(1, 0, 0, x, 0, 0, 1, 0, 0, -1, 0, z, 0, 0, 0, 1)
+}
 
 /**
  * Spreads a square of heights over more texels, linearly between the middles of its cells and on to its edges.
@@ -136,11 +146,10 @@ export class GroundShadow extends HeightFieldShadow {
   readonly #others: GroundShadow[] = []
   #uses = 0
 
-  /** @throws If an argument is missing or out of its range, or the atmosphere's world is flat. */
+  /** @throws If an argument is missing or out of its range. */
   constructor(atmosphere: Atmosphere, ground: ShadowingGround, options: GroundShadowOptions = {}) {
     const where = 'GroundShadow'
     checkAtmosphere(where, atmosphere)
-    if (atmosphere.flat) fail(where, 'atmosphere must not be flat', atmosphere)
     if (typeof ground?.heightBelow !== 'function')
       fail(where, 'ground must have heightBelow()', ground)
     const { width, texels, size } = withDefaults(where, DEFAULTS, options)
@@ -188,8 +197,8 @@ export class GroundShadow extends HeightFieldShadow {
     const own = squares.find(square => square.#camera === camera)
     if (own !== undefined) return own
     const { atmosphere, ground, width, texels, size } = this
-    _subpoint.copy(_position).applyMatrix4(atmosphere.worldToECEF)
-    atmosphere.ellipsoid.footPoint(_subpoint, _subpoint)
+    _subpoint.copy(_position).applyMatrix4(this.#toFigure)
+    this.#figure.footPoint(_subpoint, _subpoint)
     const isNear = (square: GroundShadow): boolean =>
       square.#subpoint.distanceTo(_subpoint) < MAX_DISTANCE * width
     squares.sort((a, b) => a.#used - b.#used)
@@ -220,18 +229,28 @@ export class GroundShadow extends HeightFieldShadow {
     this.#place()
   }
 
+  get #figure(): typeof PLANE {
+    return this.atmosphere.flat ? PLANE : this.atmosphere.ellipsoid
+  }
+
+  /** World space to the figure's, in metres: one matrix, good until the next call. */
+  get #toFigure(): Matrix4 {
+    const { flat, metersPerUnit, worldToECEF } = this.atmosphere
+    return flat ? _scaling.makeScale(metersPerUnit, metersPerUnit, metersPerUnit) : worldToECEF
+  }
+
   #place(): void {
     // The origin of the world, its axes and units may have changed since.
     if (!Number.isNaN(this.#middle.x)) {
-      this.matrix.copy(this.atmosphere.worldToECEF).invert().multiply(this.#square)
+      this.matrix.copy(this.#toFigure).invert().multiply(this.#square)
     }
   }
 
   /** Finds some heights of the next square, once the camera is far from the middle of the one in use or the ground has changed. */
   #find(position: Vector3): void {
-    const { atmosphere, width, texels } = this
-    const subpoint = this.#subpoint.copy(position).applyMatrix4(atmosphere.worldToECEF)
-    atmosphere.ellipsoid.footPoint(subpoint, subpoint)
+    const { width, texels } = this
+    const subpoint = this.#subpoint.copy(position).applyMatrix4(this.#toFigure)
+    this.#figure.footPoint(subpoint, subpoint)
     const isFirst = Number.isNaN(this.#middle.x)
     // The square that is being made may be left behind, too.
     _place.setFromMatrixPosition(this.#axes)
@@ -243,13 +262,13 @@ export class GroundShadow extends HeightFieldShadow {
         this.#found = 0
         return
       }
-      atmosphere.ellipsoid.eastNorthUpFrame(subpoint, this.#axes)
+      this.#figure.eastNorthUpFrame(subpoint, this.#axes)
       this.#groundVersion = this.ground.version
       const isLeap = distance > LEAP * width && texels > COARSE
       this.#coarse = isLeap ? new Float32Array(COARSE ** 2) : null
       this.#found = 0
     }
-    _toWorld.copy(atmosphere.worldToECEF).invert()
+    _toWorld.copy(this.#toFigure).invert()
     const heights = this.#coarse ?? this.#next
     const side = this.#coarse ? COARSE : texels
     const most = this.#coarse ? COARSE_PER_FRAME : ROWS_PER_FRAME * texels
@@ -278,13 +297,13 @@ export class GroundShadow extends HeightFieldShadow {
 
   /** Height of the next square's ground over the plane through its middle, by number of so many along its edge [m]. */
   #heightAt(index: number, side: number): number {
-    const { atmosphere, width } = this
+    const { width } = this
     const east = (index % side) + 0.5
     const north = Math.floor(index / side) + 0.5
     _place.set(east / side - 0.5, north / side - 0.5, 0).multiplyScalar(width)
     _place.applyMatrix4(this.#axes)
     _world.copy(_place).applyMatrix4(_toWorld)
-    return this.ground.heightBelow(_world) - atmosphere.ellipsoid.heightAt(_place)
+    return this.ground.heightBelow(_world) - this.#figure.heightAt(_place)
   }
 
   /** Puts the next square in the place of the one in use. */

@@ -16,6 +16,7 @@ export interface HeightFieldShadowOptions {
 }
 
 const _direction = new Vector3()
+const _position = new Vector3()
 const _axes = new Matrix4()
 const _linear = new Matrix3()
 
@@ -54,7 +55,8 @@ class HillsInAir implements AirShadow {
     view.atmosphere.space.displacement(_axes.identity(), _linear)
     _axes.setFromMatrix3(_linear.invert()).copyPosition(view.camera.matrixWorld)
     const { camera } = view
-    const toLight = this.#shafts.source.direction(_direction, camera.position)
+    _position.setFromMatrixPosition(camera.matrixWorld)
+    const toLight = this.#shafts.source.direction(_direction, _position)
     const toField = this.#swept.update(renderer, camera, toLight)
     this.#toField.value.multiplyMatrices(toField, _axes)
   }

@@ -1,4 +1,4 @@
-import { Vector2 } from 'three'
+import { Vector2, type OrthographicCamera } from 'three'
 import { Fn, If, bool, float, mix, screenUV, uv, vec3 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
@@ -197,12 +197,16 @@ export class ScreenShafts implements ScreenShadows {
     const { distance } = ray
     const thinning = this.grid.thinningOn(ray.cosView)
     const { front, beyond, depth } = this.#seenAt(at, distance, thinning, false)
-    let seen: ShaftRay = ray
+    const { isOrthographicCamera } = this.#shafts.camera as OrthographicCamera
+    const start = isOrthographicCamera
+      ? view.toMapped(vec3(this.#rays.position(renderer, at, float(0.5)).xy, 0))
+      : undefined
+    let seen: ShaftRay = { ...ray, start }
     if (front !== undefined) {
       const { behind, distance: nearest } = front
       const before = front.before.add(behind).toConst()
       seen = {
-        ...ray,
+        ...seen,
         distance: behind.greaterThan(MIN_TRANSMITTANCE).select(distance, nearest).toConst(),
         seenFrom: from => from.lessThan(nearest).select(before, behind)
       }
@@ -261,7 +265,7 @@ export class ScreenShafts implements ScreenShadows {
     If(this.#hasMedia.greaterThan(0), () => {
       const media = this.#shafts.shadowedAir.mediaOn({ view: this.#shafts.view, ...ray })
       for (const { transmittance, singleScattered } of media) {
-        light.assign(light.mul(transmittance).add(singleScattered))
+        light.assign(light.mul(transmittance).add(singleScattered ?? 0))
       }
     })
     return this.#color(light)

@@ -28,7 +28,7 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
 
   /** Asked by three of what is in `scene.fog` alone. @throws Always: a node does not belong there. */
   get isFogExp2(): boolean {
-    return fail('aerialPerspectiveFog', 'set it as scene.fogNode, not as scene.fog')
+    return fail('aerialPerspectiveFog', 'set it as scene.fogNode')
   }
 
   override setup(_builder: NodeBuilder): Node {
@@ -41,6 +41,15 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
   }
 }
 
-/** Aerial perspective as a scene's fog: see {@link AerialPerspectiveFogNode}. */
-export const aerialPerspectiveFog = (atmosphere: Atmosphere): AerialPerspectiveFogNode =>
-  new AerialPerspectiveFogNode(atmosphere)
+/**
+ * Aerial perspective as a scene's fog: see {@link AerialPerspectiveFogNode}.
+ *
+ * @param options - None: light shafts of materials are a layer of the sky, `forwardShafts`.
+ */
+export const aerialPerspectiveFog = (
+  atmosphere: Atmosphere,
+  options?: undefined
+): AerialPerspectiveFogNode =>
+  options
+    ? fail('aerialPerspectiveFog', 'use forwardShafts()')
+    : new AerialPerspectiveFogNode(atmosphere)

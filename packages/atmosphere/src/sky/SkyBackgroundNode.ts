@@ -40,7 +40,7 @@ export class SkyBackgroundNode extends AtmosphereNode {
 
   /** Asked by three of what is in `scene.background` alone. @throws Always: a node does not belong there. */
   get isCubeTexture(): boolean {
-    return fail('skyBackground', 'set it as scene.backgroundNode, not as scene.background')
+    return fail('skyBackground', 'set it as scene.backgroundNode')
   }
 
   override customCacheKey(): number {

@@ -47,8 +47,8 @@ export interface ShadowedMedium {
   readonly front: Float
   /** Part of the light from farther away that passes the medium, in [0, 1]. */
   readonly transmittance: Float
-  /** Light that it adds, scattered once. */
-  readonly singleScattered: Vec4
+  /** Light that it adds, scattered once; null where the source does not light it: then it only dims. */
+  readonly singleScattered: Vec4 | null
   /** Light that it adds, scattered more often than once. */
   readonly multiplyScattered: Vec4
   /** Distance up to which it has added a part of its light, given in [0, 1] [m]. */
@@ -118,7 +118,7 @@ export interface SkyLayer {
   /** Extinction of its medium at the camera, as of the last {@link update} [1/m]. */
   readonly extinction?: number
   /**
-   * Its medium as shadows see it, in the light of the source of `ray.view`; null if that does not light it.
+   * Its medium as shadows see it, in the light of the source of `ray.view`; null if it is none in that light.
    *
    * @param ray - View ray, to {@link SKY_DISTANCE} or farther for the sky.
    * @param isSun - True if that source is the atmosphere's sun.
@@ -134,6 +134,6 @@ const EFFECTS = ['eclipse', 'background', 'ground', 'glow', 'below', 'inScatter'
 /** @throws If it is no layer. */
 export function checkLayer(where: string, layer: SkyLayer): void {
   if (!EFFECTS.some(name => typeof layer?.[name] === 'function')) {
-    fail(where, 'layer must be a SkyLayer, such as moon() or heightFog()', layer)
+    fail(where, 'layer must be a SkyLayer or forwardShafts()', layer)
   }
 }

@@ -177,7 +177,7 @@ describe('bad input to light shafts', () => {
       () => new Atmosphere().add(forwardShafts(atmosphere, camera, light))
     ],
     [
-      'Atmosphere.add: layer must be a SkyLayer, such as moon() or heightFog(), got a LightShafts',
+      'Atmosphere.add: layer must be a SkyLayer or forwardShafts(), got a LightShafts',
       () => atmosphere.add(lightShafts(atmosphere, camera, light))
     ]
   ]

@@ -153,7 +153,11 @@ export class GridHeights implements PageSource {
     checkNonNegative(where, 'fade', fade)
     this.#fade = Math.max(fade, 1)
 
-    const numbers = Float32Array.from(values, value => (value === noData ? NaN : value * scale))
+    // Files of float32 write theirs in decimals, which are not always the same number.
+    const missing = Math.fround(noData ?? NaN)
+    const numbers = Float32Array.from(values, value =>
+      Math.fround(value) === missing ? NaN : value * scale
+    )
     let level = fillHoles({ width, height, values: numbers }, outside)
     const levels = [level]
     // Around the planet a level has as many columns as fit: an odd number has no half.

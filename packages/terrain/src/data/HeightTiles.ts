@@ -2,6 +2,7 @@ import { MathUtils, type Vector3 } from 'three'
 import { checkRange, withDefaults } from '@welkin/atmosphere'
 import { checkPositive } from '@welkin/geo'
 import type { HeightSample } from '../heights/HeightSource'
+import { levelOf } from '../heights/sampleGround'
 import type { PageRequest, PageSource } from '../pages/PageSource'
 import {
   geographicGradient,
@@ -27,6 +28,7 @@ import {
   TilesAbout,
   TileStore,
   type ReadTile,
+  type TileCounts,
   type TileOptions
 } from './TileStore'
 import type { TileUrl } from './tileUrl'
@@ -138,8 +140,7 @@ export class HeightTiles implements PageSource {
     // Bicubic interpolation overshoots the pixels' heights.
     this.lowest = lowest - OVERSHOOT * 1000
     this.highest = highest + OVERSHOOT * 1000
-    const otherwise = Math.min(Math.max(0, lowest), highest)
-    this.#pyramid = new TilePyramid(size, minZoom, otherwise, wide)
+    this.#pyramid = new TilePyramid(size, minZoom, levelOf(all), wide)
     this.#isMercator = isMercator
   }
 
@@ -148,8 +149,8 @@ export class HeightTiles implements PageSource {
     return this.#store.version
   }
 
-  /** Tiles in memory, requests under way, and memory of the tiles [bytes]. */
-  get tiles(): { count: number; loading: number; bytes: number } {
+  /** Tiles in memory, requests under way, tiles that are not there, and memory of the tiles [bytes]. */
+  get tiles(): TileCounts {
     return this.#store.tiles
   }
 

@@ -12,6 +12,7 @@ import {
   TilesAbout,
   TileStore,
   type HeldTile,
+  type TileCounts,
   type TileOptions
 } from './TileStore'
 import type { TileUrl } from './tileUrl'
@@ -80,8 +81,8 @@ export class ImageTiles implements PageImages {
     return this.#store.version
   }
 
-  /** Tiles in memory, requests under way, and memory of the tiles [bytes]. */
-  get tiles(): { count: number; loading: number; bytes: number } {
+  /** Tiles in memory, requests under way, tiles that are not there, and memory of the tiles [bytes]. */
+  get tiles(): TileCounts {
     return this.#store.tiles
   }
 

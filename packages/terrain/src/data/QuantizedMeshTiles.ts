@@ -1,6 +1,6 @@
 import { fail } from '@welkin/geo'
 import { HeightTiles, heightTile, type HeightTilesOptions } from './HeightTiles'
-import { GONE } from './loadPixels'
+import { answerOf } from './loadPixels'
 import { rasterizeMesh, type QuantizedMesh } from './rasterizeMesh'
 import type { TileUrl } from './tileUrl'
 
@@ -18,10 +18,7 @@ export interface QuantizedMeshTilesOptions extends Omit<HeightTilesOptions, 'loa
 const TYPES = 'application/vnd.quantized-mesh,application/octet-stream;q=0.9'
 
 async function fetchTile(url: string, signal: AbortSignal): Promise<ArrayBuffer | null> {
-  const response = await fetch(url, { signal, headers: { Accept: TYPES } })
-  if (GONE.has(response.status)) return null
-  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`)
-  return response.arrayBuffer()
+  return (await answerOf(url, signal, { Accept: TYPES }))?.arrayBuffer() ?? null
 }
 
 /**

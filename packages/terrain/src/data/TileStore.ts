@@ -46,6 +46,9 @@ export const TILE_DEFAULTS: Required<TileOptions> = {
   loadPixels
 }
 
+/** Tiles without anything on them after which the user is told, if there was none with something before. */
+const MANY = 4
+
 /** Loads a tile: null if there is none, or nothing on it, an error if it may be tried again. */
 export type ReadTile<T> = (url: string, signal: AbortSignal) => Promise<T | null>
 
@@ -60,10 +63,25 @@ export function pictureReader<T>(
 ): ReadTile<T> {
   return async (url, signal) => {
     const pixels = await loadPixels(url, signal)
-    const isWhole =
-      pixels?.width === size && pixels.height === size && pixels.data.length === 4 * size ** 2
-    return isWhole && !signal.aborted ? decode(pixels.data) : null
+    if (pixels === null || signal.aborted) return null
+    const { width, height, data } = pixels
+    if (width !== size || height !== size || data.length !== 4 * size ** 2) {
+      throw new PermanentFailure(`${url} has ${width} × ${height} pixels, size is ${size}`)
+    }
+    return decode(data)
   }
+}
+
+/** Numbers of tiles. */
+export interface TileCounts {
+  /** In memory. */
+  readonly count: number
+  /** Requested, and not yet there. */
+  readonly loading: number
+  /** Missing on the server, refused, corrupt or of another size: they are not asked for again. */
+  readonly absent: number
+  /** Memory of the tiles [bytes]. */
+  readonly bytes: number
 }
 
 /** A tile in memory. */
@@ -77,6 +95,7 @@ export interface HeldTile {
  * for again; one that fails is tried again. The tiles of the coarsest level stay while all of them take no more than half of the memory.
  */
 export class TileStore<T extends HeldTile> {
+  readonly #where: string
   readonly #options: Required<TileOptions>
   readonly #url: TileUrl
   readonly #read: ReadTile<T>
@@ -116,6 +135,7 @@ export class TileStore<T extends HeldTile> {
     checkPositive(where, 'memory', memory)
     checkNonNegative(where, 'backOff', options.backOff)
     checkEllipsoid(where, options.ellipsoid)
+    this.#where = where
     this.#options = options
     this.#url = typeof url === 'function' ? url : tileUrl(url)
     this.#read = read
@@ -131,10 +151,10 @@ export class TileStore<T extends HeldTile> {
     return this.#version
   }
 
-  /** Tiles in memory, requests under way, and memory of the tiles [bytes]. */
-  get tiles(): { count: number; loading: number; bytes: number } {
+  /** Tiles in memory, requests under way, tiles that are not there, and memory of the tiles [bytes]. */
+  get tiles(): TileCounts {
     const { size, bytes } = this.#cache
-    return { count: size, loading: this.#requests.size, bytes }
+    return { count: size, loading: this.#requests.size, absent: this.#absent.size, bytes }
   }
 
   /** Level whose pixels at the equator are as fine as a spacing [m]; it counts at all latitudes, so that neighbouring pages agree. */
@@ -186,15 +206,21 @@ export class TileStore<T extends HeldTile> {
     } catch (error) {
       if (!(error instanceof PermanentFailure)) throw error
       this.#absent.add(key)
+      // Once, and not of tiles that are missing among others: all is level ground, which says nothing.
+      if (this.#version === 0 && this.#absent.size === MANY) {
+        // oxlint-disable-next-line no-console -- A tile must not throw, and there is nobody else to tell.
+        console.warn(`${this.#where}: no tile so far, ${error.message}`)
+      }
       return null
     }
   }
 
   async #load(key: number, signal: AbortSignal): Promise<T> {
     const { z, x, y } = tileOfKey(key, this.wide)
-    const tile = await this.#read(this.#url(z, x, y), signal)
+    const url = this.#url(z, x, y)
+    const tile = await this.#read(url, signal)
     if (signal.aborted) throw new PermanentFailure('given up')
-    if (tile === null) throw new PermanentFailure('nothing on it')
+    if (tile === null) throw new PermanentFailure(`${url} is missing, refused or corrupt`)
     this.#cache.set(key, tile, this.#bytes)
     this.#version++
     return tile

@@ -91,7 +91,7 @@ export async function heightsFromGeoTIFF(
   const height = bottom - top
   const isWithin = left >= 0 && top >= 0 && right <= columns && bottom <= rows
   if (!(part.every(Number.isInteger) && isWithin && width >= 2 && height >= 2)) {
-    fail(where, 'window must be whole pixels of the file, two or more a side', part)
+    fail(where, 'window must be whole pixels of the file', part)
   }
   if (origin !== undefined && !(origin.length === 2 && origin.every(Number.isFinite))) {
     fail(where, 'origin must be two finite numbers', origin)

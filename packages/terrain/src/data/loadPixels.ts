@@ -14,10 +14,27 @@ export interface Pixels {
  * HTTP statuses after which a tile is not asked for again. 403 is among them: storage that nobody may list gives it for
  * files that do not exist. 401 is not: a name or a key may come later.
  */
-export const GONE: ReadonlySet<number> = new Set([204, 400, 403, 404, 410])
+const GONE: ReadonlySet<number> = new Set([204, 400, 403, 404, 410])
 
 /** Time after which a request has failed: servers that hang would hold up all others [ms]. */
 const PATIENCE = 30_000
+
+/**
+ * Answer of a server; null where it says that there is nothing.
+ *
+ * @throws If the network or the server fails, takes longer than 30 s, or the signal is aborted.
+ */
+export async function answerOf(
+  url: string,
+  signal: AbortSignal,
+  headers: Record<string, string> = {}
+): Promise<Response | null> {
+  const either = AbortSignal.any([signal, AbortSignal.timeout(PATIENCE)])
+  const response = await fetch(url, { signal: either, headers })
+  if (GONE.has(response.status)) return null
+  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`)
+  return response
+}
 
 /**
  * Loads the pixels of a picture in a browser, as they stand in the file: no colour profile or alpha is applied to them.
@@ -26,12 +43,8 @@ const PATIENCE = 30_000
  * @throws If the network or the server fails, takes longer than 30 s, or the signal is aborted.
  */
 export async function loadPixels(url: string, signal: AbortSignal): Promise<Pixels | null> {
-  const response = await fetch(url, {
-    signal: AbortSignal.any([signal, AbortSignal.timeout(PATIENCE)])
-  })
-  if (GONE.has(response.status)) return null
-  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`)
-  const blob = await response.blob()
+  const blob = await (await answerOf(url, signal))?.blob()
+  if (blob === undefined) return null
   let bitmap: ImageBitmap
   try {
     bitmap = await createImageBitmap(blob, {

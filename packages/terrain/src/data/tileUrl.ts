@@ -31,7 +31,7 @@ export function tileUrl(template: string, subdomains: readonly string[] = []): T
   const other = names.find(name => !known.has(name))
   if (other !== undefined) fail(where, `template must not have {${other}}`, template)
   if (names.includes('s') && subdomains.length === 0) {
-    fail(where, 'subdomains must not be empty for a template with {s}')
+    fail(where, 'subdomains must not be empty')
   }
   return (z, x, y) => {
     const south = 2 ** z - 1 - y

@@ -25,6 +25,8 @@ export interface GroundBounds {
   readonly highest: number
   /** Counts up whenever heights have changed, such as those that were loaded; left out, they never do. */
   readonly version?: number
+  /** Line that names the data's source. */
+  readonly attribution?: string
 
   /**
    * Upper bound of the difference between the heights of two places.

@@ -2,6 +2,7 @@ import { checkOwner } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
 import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
+import { levelOf } from '../heights/sampleGround'
 import type { FixedOptions } from '../TerrainOptions'
 import type { Figure } from '../tiles/cpu/figure'
 import type { Tile } from '../tiles/Tile'
@@ -29,22 +30,29 @@ export class HeightPages {
   #renderer: Renderer | null = null
   /** Tiles by the slot of their page. */
   readonly #owners: (Tile | null)[]
-  readonly #loads = new PageLoads<Float32Array>()
+  readonly #loads: PageLoads<Float32Array>
   /** Whole faces that are drawn flat until their heights arrive. */
   readonly #flat = new Set<Tile>()
   /** Answer of the source that is no heights. */
   #wrong: { answer: unknown } | null = null
-  /** Pages drawn since the atlas was made. */
+  /** Pages drawn since the atlas was made, anew with their picture, too. */
   drawn = 0
   /** Pages in a row that there was no room for. */
-  #refused = 0
+  refused = 0
 
-  constructor(source: HeightSource | PageSource, figure: Figure, options: FixedOptions) {
+  /** @param onChange - Called between drawings when the next may show more: see `PageLoads`. */
+  constructor(
+    source: HeightSource | PageSource,
+    figure: Figure,
+    options: FixedOptions,
+    onChange: () => void = () => undefined
+  ) {
     const { imagery } = options
+    this.#loads = new PageLoads(onChange)
     this.#source = source
     this.atlas = new PageAtlas(options)
     this.#baker = new PageBaker(source, figure, this.atlas, options)
-    this.#images = imagery && new ImageLoader(imagery, tile => this.#baker.request(tile))
+    this.#images = imagery && new ImageLoader(imagery, tile => this.#baker.request(tile), onChange)
     this.#owners = Array.from({ length: this.atlas.capacity }, () => null)
   }
 
@@ -77,13 +85,14 @@ export class HeightPages {
     this.#baker.flush(renderer)
     this.#images?.update(selection, (tile, colors) => {
       this.#baker.bakeImage(renderer, tile, tile.slot, colors)
+      this.drawn++
     })
     return isNew
   }
 
   /** True if missing pages will not come: their heights fail, or all pages of the atlas are in use. */
   get isStuck(): boolean {
-    if (this.#refused > 0) return this.#refused > KEEP_FOR
+    if (this.refused > 0) return this.refused > KEEP_FOR
     return !this.#loads.isWaiting && this.#images?.loads.isWaiting !== true
   }
 
@@ -103,9 +112,7 @@ export class HeightPages {
       this.#draw(root, heights, slot)
       this.#flat.delete(root)
     } else if (isNew) {
-      const { lowest, highest } = this.#source
-      const flat = new Float32Array(this.#length).fill(Math.min(Math.max(0, lowest), highest))
-      this.#bake(root, flat, slot)
+      this.#bake(root, new Float32Array(this.#length).fill(levelOf(this.#source)), slot)
       this.#flat.add(root)
     }
     root.fade = 0
@@ -135,10 +142,10 @@ export class HeightPages {
       const slot = this.#place(selection)
       // All pages are in use: the ground stays as coarse as it is.
       if (slot < 0) {
-        this.#refused++
+        this.refused++
         break
       }
-      this.#refused = 0
+      this.refused = 0
       this.#draw(tile, heights, slot)
       if (colors !== undefined) this.#baker.bakeImage(this.#renderer!, tile, slot, colors)
       count++

@@ -17,11 +17,13 @@ const MOST_REDRAWN = 2
 export class ImageLoader {
   readonly #images: PageImages
   readonly #requestOf: (tile: Tile) => PageRequest
-  readonly loads = new PageLoads<void>()
+  readonly loads: PageLoads<void>
 
-  constructor(images: PageImages, requestOf: (tile: Tile) => PageRequest) {
+  /** @param onChange - See `PageLoads`. */
+  constructor(images: PageImages, requestOf: (tile: Tile) => PageRequest, onChange: () => void) {
     this.#images = images
     this.#requestOf = requestOf
+    this.loads = new PageLoads(onChange)
   }
 
   /**

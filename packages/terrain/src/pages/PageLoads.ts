@@ -3,8 +3,8 @@ import type { Tile } from '../tiles/Tile'
 /** Selections after which what nobody asked for again is not waited for. */
 const WAIT_FOR = 60
 
-/** Selections after which what failed is asked for again. */
-const RETRY_AFTER = 300
+/** Time after which what failed is asked for again [ms]. */
+const RETRY_AFTER = 5000
 
 /** Most loads at once. */
 const MOST_LOADS = 12
@@ -14,9 +14,9 @@ export interface PageLoad<T> {
   readonly abort: AbortController
   /** Selection that first asked for it. */
   readonly first: number
-  /** Selection that last asked for it, before it failed. */
+  /** Selection that last asked for it. */
   wanted: number
-  state: 'loading' | 'there' | 'failed'
+  state: 'loading' | 'there' | 'failed' | 'due'
   /** Data, once they are there. */
   value?: T
 }
@@ -24,6 +24,12 @@ export interface PageLoad<T> {
 /** Data of pages that may take time to arrive. What nobody wants any more is given up, and what failed is asked for again later. */
 export class PageLoads<T> {
   readonly #loads = new Map<Tile, PageLoad<T>>()
+  readonly #onChange: () => void
+
+  /** @param onChange - Called when data have come later than they were asked for, have failed, or are to be asked for again. */
+  constructor(onChange: () => void) {
+    this.#onChange = onChange
+  }
 
   /** True if there are as many loads as there may be at once. */
   get isFull(): boolean {
@@ -36,7 +42,7 @@ export class PageLoads<T> {
   }
 
   get #open(): PageLoad<T>[] {
-    return [...this.#loads.values()].filter(({ state }) => state !== 'failed')
+    return [...this.#loads.values()].filter(({ state }) => state === 'loading' || state === 'there')
   }
 
   /** Tiles with loads. */
@@ -44,14 +50,11 @@ export class PageLoads<T> {
     return [...this.#loads.keys()]
   }
 
-  /** Load of a tile, which is still wanted; undefined if there is none, or it failed long ago. */
+  /** Load of a tile, which is still wanted; undefined if there is none, or it failed some time ago. */
   get(tile: Tile, selection: number): PageLoad<T> | undefined {
     const load = this.#loads.get(tile)
-    if (load?.state !== 'failed') {
-      if (load !== undefined) load.wanted = selection
-      return load
-    }
-    return selection - load.wanted < RETRY_AFTER ? load : undefined
+    if (load !== undefined) load.wanted = selection
+    return load?.state === 'due' ? undefined : load
   }
 
   /** Asks for a tile's data. */
@@ -64,7 +67,12 @@ export class PageLoads<T> {
     const load: PageLoad<T> = { abort, first: selection, wanted: selection, state: 'loading' }
     this.#loads.set(tile, load)
     const fail = (): void => {
-      load.state = 'failed'
+      load.state = abort.signal.aborted ? 'due' : 'failed'
+      if (load.state === 'due') return
+      setTimeout(() => {
+        load.state = 'due'
+        if (this.#loads.get(tile) === load) this.#onChange()
+      }, RETRY_AFTER)
     }
     const finish = (value: T): void => {
       load.state = 'there'
@@ -72,7 +80,7 @@ export class PageLoads<T> {
     }
     try {
       const answer = ask(abort.signal)
-      if (isPromise(answer)) answer.then(finish, fail)
+      if (isPromise(answer)) void answer.then(finish, fail).then(this.#onChange)
       else finish(answer)
     } catch {
       fail()
@@ -87,8 +95,8 @@ export class PageLoads<T> {
 
   /** Gives up what nobody waits for. A page that was drawn without it asks for it again when it is seen. */
   abandon(selection: number): void {
-    for (const [tile, { state, wanted, abort }] of this.#loads) {
-      if (selection - wanted <= (state === 'failed' ? RETRY_AFTER : WAIT_FOR)) continue
+    for (const [tile, { wanted, abort }] of this.#loads) {
+      if (selection - wanted <= WAIT_FOR) continue
       abort.abort()
       if (tile.slot < 0) this.#loads.delete(tile)
     }

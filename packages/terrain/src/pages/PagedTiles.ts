@@ -39,13 +39,21 @@ export class PagedTiles {
   #pagesLeft = 0
 
   readonly #horizon: TerrainHorizon | null
+  readonly #onChange: () => void
 
-  constructor(source: HeightSource | PageSource, figure: Figure, options: FixedOptions) {
+  /** @param onChange - See `Terrain.onChange`. */
+  constructor(
+    source: HeightSource | PageSource,
+    figure: Figure,
+    options: FixedOptions,
+    onChange: () => void = () => undefined
+  ) {
+    this.#onChange = onChange
     const { resolution, detail, horizon } = options
     const cells = (2 * figure.maximumRadius) / resolution / FINEST_CELL
     const finestLevel = Math.max(Math.ceil(Math.log2(cells)), 0)
     this.tree = new TileTree(figure, source, finestLevel, detail)
-    this.pages = new HeightPages(source, figure, options)
+    this.pages = new HeightPages(source, figure, options, onChange)
     this.#horizon = horizon
   }
 
@@ -56,6 +64,8 @@ export class PagedTiles {
    */
   update(renderer: Renderer, viewer: Viewer, most?: number): void {
     const { tree, pages, selection } = this
+    const before = pages.drawn
+    let fades = false
     if (pages.begin(renderer, tree.roots, tree.selections)) this.#lastLag = null
     const { frame } = renderer.info
     if (frame !== this.#frame) {
@@ -70,12 +80,19 @@ export class PagedTiles {
       drawn = pages.load(selection.missing, tree.selections, left)
       left -= drawn
       const leaps = isAtOnce || selection.lag - (this.#lastLag ?? 0) >= LEAP
-      for (const tile of selection.tiles) tile.show(frame, leaps ? 1 : 1 / FADE_FRAMES)
+      for (const tile of selection.tiles) {
+        // One that is there now is split in the next frame.
+        fades ||= tile.slot >= 0 && tile.fade > 0
+        tile.show(frame, leaps ? 1 : 1 / FADE_FRAMES)
+      }
     } while (isAtOnce && drawn > 0)
     if (most === undefined) this.#pagesLeft = left
     this.isFull = selection.lag === 0 && !pages.isFlat(tree.selections)
     const isStuck = left > 0 && drawn === 0 && selection.missing.length > 0 && pages.isStuck
     if (selection.lag === 0 || isStuck) this.#lastLag = selection.lag
+    // What is out of view makes room some drawings later.
+    const waits = pages.refused > 0 && !pages.isStuck
+    if (fades || waits || pages.drawn !== before) this.#onChange()
     if (!viewer.isOverGround) return
     this.#horizon?.cull(selection, viewer, tree.figure, pages.atlas.heightSide - 1)
   }

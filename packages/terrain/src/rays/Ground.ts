@@ -1,5 +1,6 @@
 import { Vector3 } from 'three'
 import type { GroundBounds, HeightSample } from '../heights/HeightSource'
+import { sampleGround } from '../heights/sampleGround'
 import { figureOf, type GroundSpace } from '../tiles/cpu/figure'
 
 /** Ground of a planet that rays hit and feet stand on; a `Terrain` is one. */
@@ -26,7 +27,7 @@ export function groundNormal(
   target: Vector3
 ): Vector3 {
   figureOf(atmosphere).surfaceNormal(subpoint, target)
-  const { height, gradient } = source.sampleAt(subpoint, sample)
+  const { height, gradient } = sampleGround(source, subpoint, sample)
   if (height <= seaLevel) return target
   gradient.addScaledVector(target, -gradient.dot(target))
   return target.sub(gradient).normalize()

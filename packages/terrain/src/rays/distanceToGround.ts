@@ -1,5 +1,6 @@
 import { Vector3 } from 'three'
 import type { HeightSample } from '../heights/HeightSource'
+import { sampleGround } from '../heights/sampleGround'
 import { figureOf, isFlat } from '../tiles/cpu/figure'
 import type { Ground } from './Ground'
 
@@ -48,7 +49,7 @@ function probe(
   target.cosUp = direction.dot(up)
   target.clearance = target.height - highest
   if (target.clearance > 0) return target
-  source.sampleAt(position.addScaledVector(up, -target.height), sample)
+  sampleGround(source, position.addScaledVector(up, -target.height), sample)
   target.clearance = target.height - Math.max(sample.height, seaLevel)
   return target
 }

@@ -3,6 +3,7 @@ import { checkVector, fail } from '@welkin/geo'
 import type { HeightSample } from '../heights/HeightSource'
 import { fractalSum } from '../noise/cpu/fractalSum'
 import type { Terrain } from '../Terrain'
+import { sampleGround } from '../heights/sampleGround'
 import { figureOf, poleOf, worldToGround } from '../tiles/cpu/figure'
 import { groundShares, type SharesOnCPU } from './cpu/groundRules'
 import { BROAD, BROAD_PATCHES, CLIMATE, PATCHES } from './cpu/surfaceNoise'
@@ -46,7 +47,7 @@ export function groundSharesAt(terrain: Terrain, position: Vector3): GroundShare
   const broad = fractalSum(x, y, z, BROAD_PATCHES, seed, sum).value
   const patch = fractalSum(x, y, z, PATCHES, seed, sum).value + BROAD * broad
   const climate = fractalSum(x, y, z, CLIMATE, seed, sum).value
-  const { height, gradient } = source.sampleAt(place, sample)
+  const { height, gradient } = sampleGround(source, place, sample)
   gradient.addScaledVector(up, -gradient.dot(up))
   const cosSlope = 1 / Math.sqrt(1 + gradient.lengthSq())
   const sinLatitude = up.dot(pole)

@@ -1,5 +1,6 @@
 import { Vector3 } from 'three'
 import type { GroundBounds, HeightSample } from '../heights/HeightSource'
+import { sampleGround } from '../heights/sampleGround'
 import { isPageSource } from '../pages/PageSource'
 import { faceAxes } from './cpu/cubeSphere'
 import { cubeToFigure, isFlat, type Figure } from './cpu/figure'
@@ -92,7 +93,7 @@ export class Tile {
     this.highest = highest
     // Until all data has come, a source of loaded heights may answer with coarse ones.
     if (isPageSource(source)) return
-    const { height } = source.sampleAt(this.center, sample)
+    const { height } = sampleGround(source, this.center, sample)
     // Of the arc, which is longer than the chord by 11 % at most.
     const variation = source.variation(1.12 * this.radius)
     this.lowest = Math.max(lowest, height - variation)

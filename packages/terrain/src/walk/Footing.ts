@@ -1,5 +1,6 @@
 import { Vector3 } from 'three'
 import type { HeightSample } from '../heights/HeightSource'
+import { sampleGround } from '../heights/sampleGround'
 import type { Ground } from '../rays/Ground'
 import { figureOf } from '../tiles/cpu/figure'
 
@@ -62,6 +63,6 @@ export class Footing {
   }
 
   #heightAt(position: Vector3): number {
-    return this.#ground.source.sampleAt(position, sample).height
+    return sampleGround(this.#ground.source, position, sample).height
   }
 }

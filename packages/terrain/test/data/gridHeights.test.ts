@@ -32,6 +32,18 @@ const anywhere = fc.tuple(
   fc.double({ min: 46.9, max: 47.4, noNaN: true })
 )
 
+it('knows the no-data value of 32-bit floats in all decimals that files have it in', () => {
+  const lowest = -3.4028234663852886e38
+  const numbers = Float32Array.from(values, (value, i) => (i % 7 === 0 ? lowest : value))
+  for (const noData of [lowest, -3.40282346638529e38, -3.4028235e38, -3.40282347e38]) {
+    const holed = make({ noData, outside: 500 }, numbers)
+    expect(holed.lowest).toBeGreaterThan(0)
+    expect(sampleAt(holed, longitudeOf(14), latitudeOf(7)).height).toBeGreaterThan(300)
+  }
+  const tenths = Float32Array.from(values, (value, i) => (i % 7 === 0 ? -9999.9 : value))
+  expect(make({ noData: -9999.9, outside: 500 }, tenths).lowest).toBeGreaterThan(0)
+})
+
 describe('a grid', () => {
   it('goes through its numbers, and near the function between them', () => {
     for (const i of [0, 39, 612, 1199]) {

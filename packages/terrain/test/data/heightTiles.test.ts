@@ -246,7 +246,7 @@ describe('memory and flights', () => {
     await tiles.loadHeights(pageOf(0, 0, 0, 0), never)
     expect(asked.filter(url => url === '0/0/0').length).toBe(count)
     tiles.dispose()
-    expect(tiles.tiles).toEqual({ count: 0, loading: 0, bytes: 0 })
+    expect(tiles.tiles).toEqual({ count: 0, loading: 0, absent: 0, bytes: 0 })
   })
 
   it('keeps to its budget where the coarsest level alone is larger', async () => {

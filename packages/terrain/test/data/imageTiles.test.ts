@@ -152,7 +152,7 @@ describe('what is missing', () => {
     const loading = tiles.loadImage(request, abort.signal)
     abort.abort()
     await expect(loading).rejects.toThrow('abort')
-    expect(tiles.tiles).toEqual({ count: 0, loading: 0, bytes: 0 })
+    expect(tiles.tiles).toEqual({ count: 0, loading: 0, absent: 0, bytes: 0 })
   })
 })
 
@@ -161,7 +161,7 @@ it('keeps to its memory', async () => {
   for (let i = 0; i < 40; i++) await colorsOf(tiles, pageAt(9 * i - 180, 40, 9))
   expect(tiles.tiles.bytes).toBeLessThanOrEqual(2e5)
   tiles.dispose()
-  expect(tiles.tiles).toEqual({ count: 0, loading: 0, bytes: 0 })
+  expect(tiles.tiles).toEqual({ count: 0, loading: 0, absent: 0, bytes: 0 })
 })
 
 it.each([

@@ -48,6 +48,10 @@ export function lostInMedia(
   const lost = vec4(0).toVar()
   for (const medium of media) {
     const { transmittance, singleScattered: once, multiplyScattered: often } = medium
+    if (once === null) {
+      lost.mulAssign(transmittance)
+      continue
+    }
     If(transmittance.lessThan(1), () => {
       const dark = float(0).toVar()
       loop('medium', int(count), index => {

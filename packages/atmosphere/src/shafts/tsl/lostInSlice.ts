@@ -70,11 +70,10 @@ export function lostInSlice(
       lost.assign(past(once, distance).mul(length.mul(part)))
       // Of fog what the slice adds to the light before it.
       const before = media.length > 0 ? mediaTo(from) : []
-      const fog = media.reduce<Vec4>(
-        (light, { singleScattered: added, transmittance }, i) =>
-          light.mul(transmittance).add(added.sub(before[i].singleScattered).mul(part)),
-        vec4(0)
-      )
+      const fog = media.reduce<Vec4>((light, { singleScattered: added, transmittance }, i) => {
+        const left = light.mul(transmittance)
+        return added ? left.add(added.sub(before[i].singleScattered!).mul(part)) : left
+      }, vec4(0))
       if (media.length > 0) lost.addAssign(fog)
       // As long as an even stretch of the same variance.
       const variance = sums.z.div(sum).sub(centre.mul(centre))

@@ -11,7 +11,7 @@ import { litRay, type LitPoint } from './litRay'
 import { lostDiffuse } from './lostDiffuse'
 import { dimmedBy, lostInMedia } from './lostInMedia'
 import { polarRay } from './polarMap'
-import { shadowsAlong, type ShadowedAir, type ShaftRay } from './shadowsAlong'
+import { shadowsAlong, shadowsBeside, type ShadowedAir, type ShaftRay } from './shadowsAlong'
 import { warpedSteps, type WarpedSteps } from './warpedSteps'
 
 /** Number of samples on a ray. */
@@ -70,10 +70,11 @@ export function lostLight(
 ): Vec4 {
   const { air, viewpoint } = view
   const { maximumRho, shadows } = shadowedAir
-  const { cosView, cosViewLight, distance } = shaftRay
+  const { cosView, cosViewLight, distance, start } = shaftRay
   const limits = rayLimits(viewpoint, cosView)
   const polar = polarRay(shadowedAir.frame, shaftRay.direction, cosViewLight)
-  const mapped = maximumRho.div(polar.sinViewLight).toConst() as Float
+  const widest = start ? maximumRho.add(start.length()) : maximumRho
+  const mapped = widest.div(polar.sinViewLight).toConst() as Float
   const isMappedOnly = shadows.length === 0
   const seen = limits.start.add(limits.length).min(distance)
   const end = isMappedOnly ? seen.min(mapped) : seen
@@ -86,7 +87,9 @@ export function lostLight(
     const isSky = distance.greaterThanEqual(SKY_DISTANCE)
     const denser = shadowedAir.denser()
     const airAt = litRay(view, ray, limits, cosView, denser && isSky.select(1, denser))
-    const { darkAt, missingAt } = shadowsAlong(view, shadowedAir, shaftRay, () => polar, jitter)
+    const { darkAt, missingAt } = start
+      ? shadowsBeside(view, shadowedAir, shaftRay, jitter)
+      : shadowsAlong(view, shadowedAir, shaftRay, () => polar, jitter)
     const fromEye = (inAir: Float): Float => inAir.add(limits.start).toConst()
     const media = shadowedAir.mediaOn({ ...shaftRay, view })
     const past = dimmedBy(media)

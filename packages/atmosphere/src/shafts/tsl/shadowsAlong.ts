@@ -40,6 +40,8 @@ export interface ShaftRay {
   readonly seenFrom?: (distance: Float) => Float
   /** See `AirViewRay`. */
   readonly receiver?: object
+  /** Start of an orthographic camera's line of sight, as a displacement from the camera [m]. Its light is that of the ray from the camera; shadows are where it passes. */
+  readonly start?: Vec3
 }
 
 /** Shadows on a view ray, by the distance from the camera. */
@@ -94,6 +96,23 @@ export function shadowsAlong(
     },
     missingAt: dimming.length > 0 ? missingAt : null
   }
+}
+
+/** Shadows on a line of sight that starts beside the camera, by the distance on the ray from the camera to what it meets. */
+export function shadowsBeside(
+  view: ViewUniforms,
+  shadowedAir: ShadowedAir,
+  { direction, distance, start }: ShaftRay,
+  jitter: Float
+): Shadows {
+  const at = (from: Float): ReturnType<typeof shadowAt> => {
+    const beside = start!.mul(from.div(distance).oneMinus())
+    const offset = direction.mul(from).add(beside).toConst() as Vec3
+    const far = offset.length().max(1e-3).toConst() as Float
+    return shadowAt(view, shadowedAir, { direction: offset.div(far).toConst(), jitter }, far)
+  }
+  const isDimmed = shadowedAir.shadows.some(({ diffuse }) => diffuse !== undefined)
+  return { darkAt: from => at(from).dark, missingAt: isDimmed ? from => at(from).missing! : null }
 }
 
 /** Part of the light scattered once, and of that scattered more often, that is missing at a place on a ray from the camera. */

@@ -68,7 +68,7 @@ export class GroundMask {
     checkOptions(where, options, 'materials', 'west', 'east', 'south', 'north')
     const { materials, west, east, south, north } = options
     if (!Array.isArray(materials) || materials.length < 1 || materials.length > 4) {
-      fail(where, 'materials must be one to four, in the order of the channels', materials)
+      fail(where, 'materials must be one to four', materials)
     }
     for (const material of materials) {
       if (material !== null) checkChoice(where, 'materials', material, GROUND_KINDS)

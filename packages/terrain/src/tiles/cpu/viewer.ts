@@ -25,9 +25,9 @@ export interface Viewer {
   readonly direction: Vector3
   /** Radius of the sphere that hides what is behind the horizon, where the ellipsoid is the unit sphere; at most 1. */
   readonly occluder: number
-  /** Angle at the planet's centre from the viewer to the horizon; infinite in a flat world [rad]. */
+  /** Angle at the planet's centre from the viewer to the horizon; infinite in a flat world, and for parallel lines of sight [rad]. */
   readonly horizon: number
-  /** Its cosine; −1 in a flat world. */
+  /** Its cosine; −1 where it is infinite. */
   readonly cosHorizon: number
 }
 
@@ -70,15 +70,16 @@ export function viewerOf(
   const radius = direction.length()
   // Heights shrink by the largest radius at least, where the ellipsoid is the unit sphere.
   const occluder = 1 + Math.min(lowest, 0) / figure.minimumRadius
-  const horizon = isFlat(figure) ? Infinity : horizonAngle(radius, occluder)
+  const isParallel = (camera as { isOrthographicCamera?: boolean }).isOrthographicCamera === true
+  // Parallel lines of sight start elsewhere, and pass the planet elsewhere.
+  const horizon = isFlat(figure) || isParallel ? Infinity : horizonAngle(radius, occluder)
   return {
     position: positionECEF.clone(),
     datumPoint: subpoint.clone().addScaledVector(up, clearance),
     clearance,
     // Left, right, top and bottom: near and far depend on the kind of depth.
     planes: frustum.planes.slice(0, 4).map(plane => plane.clone()),
-    isOverGround:
-      isOverGround && !(camera as { isOrthographicCamera?: boolean }).isOrthographicCamera,
+    isOverGround: isOverGround && !isParallel,
     seaLevel,
     shadowDistance,
     direction: direction.divideScalar(radius),
