@@ -4,7 +4,8 @@ import {
   cloudsDebug,
   cloudShadow,
   cloudSkyLight,
-  cloudWorldMap
+  cloudWorldMap,
+  precipitationShafts
 } from '@welkin/clouds'
 import type { CloudPresetName, CloudQuality, CloudQualityName, CloudsDebug } from '@welkin/clouds'
 import { shadow } from 'three/tsl'
@@ -79,7 +80,10 @@ export async function createClouds(
     // #shown const quality = 'medium'
     // #shown const worldMap = null // of cloud cover, for globes
     const layers = cloudPreset(preset)
-    const node = clouds(color, depth, camera, atmosphere, layers, { quality, worldMap })
+    const falls = [...layers].some(layer => layer.precipitation?.rate)
+    const precipitation = falls ? precipitationShafts() : undefined // rain and snow of those that have some
+    const options = { quality, worldMap, precipitation }
+    const node = clouds(color, depth, camera, atmosphere, layers, options)
     pipeline.outputNode = node
     Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) }) // with three's own
     cloudSkyLight(sky, node) // the sky's light, through clouds and from them

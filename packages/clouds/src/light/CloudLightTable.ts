@@ -2,6 +2,7 @@ import { Data3DTexture, DataUtils, HalfFloatType, LinearFilter, type TypedArray 
 import { texture3D } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import { withDefaults, type ScatteringAngles } from '@welkin/atmosphere'
+import { fail } from '@welkin/geo'
 import { checkRanges } from '../check'
 import { parameterProperties } from '../parameterProperties'
 import { fairWeatherPhase, scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
@@ -127,6 +128,9 @@ export class CloudLightTable {
    * @throws Error naming the parameter and its value when one is out of its range.
    */
   set(changes: Partial<CloudPhaseParameters>): this {
+    if ('dropletRadius' in changes) {
+      fail('CloudLightTable', 'dropletRadius needs a DropletLightTable', changes.dropletRadius)
+    }
     const phase = Object.freeze(withDefaults('CloudLightTable', this.#phase, changes))
     checkRanges('CloudLightTable', phase, ranges)
     this.#phase = phase

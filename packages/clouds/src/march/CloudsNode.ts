@@ -51,7 +51,7 @@ export interface CloudsOptions {
   extinction?: CloudFieldOptions['extinction']
   /** Light table to share between nodes; left out, the node makes and owns its own. */
   light?: CloudLightTable
-  /** Rain and snow under the clouds, of layers that have `precipitation`: `precipitationShafts()`. Left out, none is seen. */
+  /** Rain and snow under the clouds: `precipitationShafts()`. Needed once a layer has a rate of `precipitation`, then or later. */
   precipitation?: PrecipitationShafts
 }
 
@@ -125,7 +125,9 @@ export class CloudsNode extends AtmosphereNode {
     layers: CloudLayers,
     options: CloudsOptions = {}
   ) {
-    if (!isPerspective(camera)) fail('CloudsNode', 'camera must be a PerspectiveCamera', camera)
+    if (!(camera as PerspectiveCamera | undefined)?.isPerspectiveCamera) {
+      fail('CloudsNode', 'camera must be a PerspectiveCamera', camera)
+    }
     super(atmosphere, camera)
     checkOptions(
       'CloudsNode',
@@ -145,14 +147,14 @@ export class CloudsNode extends AtmosphereNode {
     }
     this.colorNode = colorNode
     this.depthNode = depthNode
-    this.camera = camera
+    this.camera = camera as PerspectiveCamera
     const field = { noise, worldMap, extinction }
     this.field = new CloudField(atmosphere, layers, this.view, field, 'CloudsNode')
     this.set(settings)
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
     this.#precipitation = precipitation
-    checkPrecipitation('CloudsNode', layers, precipitation)
+    checkPrecipitation(layers, precipitation)
     this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
     this.shadows = new CloudShadowMap(this.field, precipitation)
     this.passes = new CloudRenderer({
@@ -289,6 +291,7 @@ export class CloudsNode extends AtmosphereNode {
     field.pixelAngle.value = 2 / (camera.projectionMatrix.elements[5] * height)
     field.depthScale.value = light.nodes.depthScale.value
     field.update(view, this.#time ?? frame.time)
+    checkPrecipitation(field.layers, this.#precipitation)
     const version = light.texture.version + (this.#precipitation?.update(field, view) ?? 0)
     this.shadows.update(renderer, view, this.castsInto.size > 0)
     this.passes.setSize(width, height, this.#quality.block)
@@ -332,10 +335,6 @@ export class CloudsNode extends AtmosphereNode {
     if (this.#ownsLight) this.light.dispose()
     super.dispose()
   }
-}
-
-function isPerspective(camera: Camera): camera is PerspectiveCamera {
-  return (camera as PerspectiveCamera | undefined)?.isPerspectiveCamera === true
 }
 
 /** Volumetric clouds as a post effect: see {@link CloudsNode}. */

@@ -52,7 +52,7 @@ describe('precipitation of a layer', () => {
     const [color, depth] = [vec4(0), float(0)]
     expect(() =>
       clouds(color, depth, new PerspectiveCamera(), new Atmosphere(), cloudPreset('shower'))
-    ).toThrow('CloudsNode: precipitation must be given: layers have some')
+    ).toThrow('CloudsNode: precipitation must be given, by precipitationShafts(): layers have some')
     expect(() => precipitationShafts({ rain: 1 } as never)).toThrow("unknown option 'rain'")
   })
 })
