@@ -122,7 +122,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => clouds(wrong(new Scene()), float(1), camera, atmosphere, layers)
   ],
   [
-    'CloudsNode: worldMap must be a CloudWorldMap, by cloudWorldMap(), or null, got a Texture',
+    'CloudsNode: worldMap must be a CloudWorldMap or null, got a Texture',
     () => make({ worldMap: new Texture() })
   ],
   ['CloudWorldMap: texture must be a Texture, got a Mesh', () => cloudWorldMap(wrong(new Mesh()))],

@@ -115,14 +115,14 @@ const ranges = {
 function requireParameters(parameters: CloudLayerParameters): void {
   const where = 'CloudLayer'
   checkRanges(where, parameters, ranges)
-  const { baseAltitude, topAltitude, weatherWeights, wind, shadow } = parameters
+  const { baseAltitude, topAltitude, wind } = parameters
   if (topAltitude <= baseAltitude) {
     fail(where, `topAltitude must be above baseAltitude (${baseAltitude} m)`, topAltitude)
   }
-  checkSpectrum(where, 'weatherWeights', weatherWeights, 1)
+  checkSpectrum(where, 'weatherWeights', parameters.weatherWeights, 1)
   checkOptions(`${where}.wind`, wind, 'east', 'north')
   for (const name of ['east', 'north'] as const) checkFinite(where, `wind.${name}`, wind[name])
-  checkBoolean(where, 'shadow', shadow)
+  checkBoolean(where, 'shadow', parameters.shadow)
 }
 
 /**
@@ -197,8 +197,7 @@ function merge(
 ): CloudLayerParameters {
   const merged = withDefaults('CloudLayer', base, changes)
   requireParameters(merged)
-  const [a, b, c, d] = merged.weatherWeights
-  const weatherWeights = Object.freeze([a, b, c, d] as const)
+  const weatherWeights = Object.freeze([...merged.weatherWeights] as const)
   const { precipitation: falls } = merged
   const precipitation = falls && checkedPrecipitation(falls, base.precipitation)
   const wind = Object.freeze({ ...merged.wind })

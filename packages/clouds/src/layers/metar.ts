@@ -78,6 +78,9 @@ const TOWERING = 3500
 const STORM_TOP = 11_000
 const STORM_THICKNESS = 6000
 
+/** Thickness of fog whose top one does not see, at most [m]. */
+const DEEPEST_FOG = 900
+
 /** Least thickness of other clouds [m]. */
 const LEAST_THICKNESS = 200
 
@@ -94,11 +97,9 @@ const preset = (name: CloudPresetName, index = 0): CloudLayerParameters =>
 
 /** Fog from the ground on, even, in which one sees a distance up [m]. */
 const fog = (visibility: number): Parameters => ({
-  ...preset('overcast'),
-  density: VISUAL_DEPTH / Math.max(visibility, HUNDRED_FEET),
-  profileExponent: 8,
-  densityGrowth: 0,
-  shapeAmount: 0.2
+  ...preset('fog'),
+  topAltitude: DEEPEST_FOG,
+  density: VISUAL_DEPTH / Math.max(visibility, HUNDRED_FEET)
 })
 
 /** Well-known layer for a cloud at a height above the station [m]. */
@@ -227,7 +228,9 @@ function precipitationOf(
   const isSnow =
     each.some(kind => /SN|SG/.test(kind) || (kind === 'UP' && isFrozen)) && !each.includes('RA')
   const isDrizzle = kinds === 'DZ'
-  const rate = (isSnow ? rates.snow : isDrizzle ? rates.drizzle : rates.rain)[['-', '', '+'].indexOf(intensity)]
+  const rate = (isSnow ? rates.snow : isDrizzle ? rates.drizzle : rates.rain)[
+    ['-', '', '+'].indexOf(intensity)
+  ]
   const freezing = elevation + (temperature ?? 15) / LAPSE
   const freezingLevel = isSnow
     ? Math.min(freezing, elevation)

@@ -129,7 +129,7 @@ export class CloudLightTable {
    */
   set(changes: Partial<CloudPhaseParameters>): this {
     if ('dropletRadius' in changes) {
-      fail('CloudLightTable', 'dropletRadius needs a DropletLightTable', changes.dropletRadius)
+      fail('CloudLightTable', 'dropletRadius needs a DropletLightTable')
     }
     const phase = Object.freeze(withDefaults('CloudLightTable', this.#phase, changes))
     checkRanges('CloudLightTable', phase, ranges)
@@ -140,14 +140,14 @@ export class CloudLightTable {
 
   /** Sets the uniforms of the phase function. */
   #apply(): void {
-    const phase = this.#phase
+    const { nodes, phase } = this
     const { depthScale, moments } = scalePhase(phase)
-    this.nodes.depthScale.value = depthScale
-    this.nodes.scatteringScale.value = phase.scatteringAlbedo / depthScale
-    this.nodes.oneMinusAsymmetry.value = 1 - moments[1]
-    this.nodes.secondMoment.value = moments[2]
+    nodes.depthScale.value = depthScale
+    nodes.scatteringScale.value = phase.scatteringAlbedo / depthScale
+    nodes.oneMinusAsymmetry.value = 1 - moments[1]
+    nodes.secondMoment.value = moments[2]
     for (const name of ['forwardAsymmetry', 'backwardAsymmetry', 'forwardShare'] as const) {
-      this.nodes[name].value = phase[name]
+      nodes[name].value = phase[name]
     }
   }
 

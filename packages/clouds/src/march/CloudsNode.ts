@@ -344,5 +344,5 @@ export const clouds = (
   camera: Camera,
   atmosphere: Atmosphere,
   layers: CloudLayers,
-  options: CloudsOptions = {}
+  options?: CloudsOptions
 ): CloudsNode => new CloudsNode(color, depth, camera, atmosphere, layers, options)

@@ -157,7 +157,15 @@ describe('cloudLayersFromMETAR', () => {
       north: expect.closeTo(5.144, 3)
     })
     const own = cloudPreset('fairWeather').at(0).wind
-    const unknown = ['/////KT', '///05KT', '240//KT', '///05G15KT', '24010G//KT', 'VRB//KT', '///12MPS']
+    const unknown = [
+      '/////KT',
+      '///05KT',
+      '240//KT',
+      '///05G15KT',
+      '24010G//KT',
+      'VRB//KT',
+      '///12MPS'
+    ]
     for (const wind of ['VRB03KT', '', ...unknown.filter(each => each !== '24010G//KT')])
       expect(windOf(wind)).toEqual(own)
     expect(windOf('24010G//KT')).toEqual(windOf('24010KT'))

@@ -45,14 +45,14 @@ describe('precipitation of a layer', () => {
     clouds(...bare, dry).dispose()
     dry.at(0).precipitation = { rate: 30 }
     expect(dry.at(0).parameters).toEqual(storm.parameters)
-    expect(() => clouds(...bare, dry)).toThrow('precipitation must be given')
+    expect(() => clouds(...bare, dry)).toThrow('precipitation must be precipitationShafts')
     expect(() => precipitationShafts({ drops: {} as never })).toThrow(
       'PrecipitationShafts: drops must be a ScatteringPhase or null'
     )
     const [color, depth] = [vec4(0), float(0)]
     expect(() =>
       clouds(color, depth, new PerspectiveCamera(), new Atmosphere(), cloudPreset('shower'))
-    ).toThrow('CloudsNode: precipitation must be given, by precipitationShafts(): layers have some')
+    ).toThrow('CloudsNode: precipitation must be precipitationShafts(): layers have some')
     expect(() => precipitationShafts({ rain: 1 } as never)).toThrow("unknown option 'rain'")
   })
 })
