@@ -64,7 +64,7 @@ export interface ValleyStill {
 /** A still of any kind. */
 export type AnyStill = Still | ValleyStill | TerrainStill | StreetStill
 
-/** Where one looks at a preset. */
+/** View of a preset. */
 interface PresetView extends Pick<Still, 'place'> {
   azimuth: number
   pitch: number

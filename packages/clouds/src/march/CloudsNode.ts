@@ -273,8 +273,9 @@ export class CloudsNode extends AtmosphereNode {
   }
 
   override updateBefore(frame: NodeFrame): undefined {
-    super.updateBefore(frame)
     const { camera, field, light } = this
+    checkPrecipitation(field.layers, this.#precipitation)
+    super.updateBefore(frame)
     const { renderer } = frame
     if (renderer === null) return
     this.#drawnBy = renderer
@@ -291,7 +292,6 @@ export class CloudsNode extends AtmosphereNode {
     field.pixelAngle.value = 2 / (camera.projectionMatrix.elements[5] * height)
     field.depthScale.value = light.nodes.depthScale.value
     field.update(view, this.#time ?? frame.time)
-    checkPrecipitation(field.layers, this.#precipitation)
     const version = light.texture.version + (this.#precipitation?.update(field, view) ?? 0)
     this.shadows.update(renderer, view, this.castsInto.size > 0)
     this.passes.setSize(width, height, this.#quality.block)

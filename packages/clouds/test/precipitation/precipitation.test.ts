@@ -55,6 +55,22 @@ describe('precipitation of a layer', () => {
     ).toThrow('CloudsNode: precipitation must be precipitationShafts(): layers have some')
     expect(() => precipitationShafts({ rain: 1 } as never)).toThrow("unknown option 'rain'")
   })
+
+  test('is asked for as soon as a layer begins to rain, too, and not before', () => {
+    const layers = cloudPreset('fairWeather', 2)
+    const bare = [vec4(0), float(0), new PerspectiveCamera(), new Atmosphere()] as const
+    const node = clouds(...bare, layers)
+    const shown = clouds(...bare, layers, { precipitation: precipitationShafts() })
+    const draw = (each: typeof node) => () => each.updateBefore({ renderer: null } as never)
+    expect(draw(node)).not.toThrow()
+    layers.copy(cloudPreset('shower'))
+    expect(draw(node)).toThrow(
+      'CloudsNode: precipitation must be precipitationShafts(): layers have some'
+    )
+    expect(draw(shown)).not.toThrow()
+    layers.copy(cloudPreset('cumulonimbus'))
+    expect(draw(node)).not.toThrow()
+  })
 })
 
 describe('precipitation', () => {
