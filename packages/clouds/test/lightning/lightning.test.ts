@@ -223,7 +223,7 @@ describe('lightning', () => {
       up,
       height: 0,
       viewToMapped: new Matrix3()
-    } as AtmosphereView
+    } as unknown as AtmosphereView
     const storm = lightning(made)
     let [flashes, time] = [0, 0]
     storm.addEventListener('strike', () => flashes++)
