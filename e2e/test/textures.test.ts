@@ -345,7 +345,7 @@ it('near rain and wet ground sample as many textures as the README says', async 
   const falling = (make: typeof rainfall, name: string, hasShelter: boolean): Promise<number> =>
     count(name, renderer => {
       const { atmosphere, camera, scene, sun, sky } = new World()
-      const shelter = hasShelter ? new PrecipitationShelter(scene) : null
+      const shelter = hasShelter ? new PrecipitationShelter(scene) : undefined
       scene.add(make(atmosphere, { rate: 5, lights: [sun, sky, new PointLight()], shelter }))
       return () => renderer.render(scene, camera)
     })

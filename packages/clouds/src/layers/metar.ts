@@ -99,7 +99,9 @@ const preset = (name: CloudPresetName, index = 0): CloudLayerParameters =>
 const fog = (visibility: number): Parameters => ({
   ...preset('fog'),
   topAltitude: DEEPEST_FOG,
-  density: VISUAL_DEPTH / Math.max(visibility, HUNDRED_FEET)
+  density: VISUAL_DEPTH / Math.max(visibility, HUNDRED_FEET),
+  profileExponent: 8,
+  shapeAmount: 0.2
 })
 
 /** Well-known layer for a cloud at a height above the station [m]. */

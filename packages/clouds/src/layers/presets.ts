@@ -75,8 +75,8 @@ const fog: Partial<CloudLayerParameters> = {
   ...overcast,
   baseAltitude: 0,
   topAltitude: 400,
-  profileExponent: 8,
-  shapeAmount: 0.2,
+  profileExponent: 4,
+  shapeAmount: 0.4,
   densityGrowth: 0
 }
 
