@@ -36,7 +36,7 @@ export function checkPrecipitation(
   medium: object | undefined
 ): void {
   if (medium === undefined && [...layers].some(layer => layer.precipitation?.rate)) {
-    fail('CloudsNode', 'precipitation must be precipitationShafts(): layers have some')
+    fail('CloudsNode', 'precipitation must be precipitationShafts(): it rains')
   }
 }
 

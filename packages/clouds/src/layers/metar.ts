@@ -101,6 +101,7 @@ const fog = (visibility: number): Parameters => ({
   topAltitude: DEEPEST_FOG,
   density: VISUAL_DEPTH / Math.max(visibility, HUNDRED_FEET),
   profileExponent: 8,
+  densityGrowth: 0,
   shapeAmount: 0.2
 })
 

@@ -75,9 +75,7 @@ const fog: Partial<CloudLayerParameters> = {
   ...overcast,
   baseAltitude: 0,
   topAltitude: 400,
-  profileExponent: 4,
-  shapeAmount: 0.4,
-  densityGrowth: 0
+  profileExponent: 4
 }
 
 const cirrus: Partial<CloudLayerParameters> = {

@@ -52,7 +52,7 @@ describe('precipitation of a layer', () => {
     const [color, depth] = [vec4(0), float(0)]
     expect(() =>
       clouds(color, depth, new PerspectiveCamera(), new Atmosphere(), cloudPreset('shower'))
-    ).toThrow('CloudsNode: precipitation must be precipitationShafts(): layers have some')
+    ).toThrow('CloudsNode: precipitation must be precipitationShafts(): it rains')
     expect(() => precipitationShafts({ rain: 1 } as never)).toThrow("unknown option 'rain'")
   })
 
@@ -64,9 +64,7 @@ describe('precipitation of a layer', () => {
     const draw = (each: typeof node) => () => each.updateBefore({ renderer: null } as never)
     expect(draw(node)).not.toThrow()
     layers.copy(cloudPreset('shower'))
-    expect(draw(node)).toThrow(
-      'CloudsNode: precipitation must be precipitationShafts(): layers have some'
-    )
+    expect(draw(node)).toThrow('CloudsNode: precipitation must be precipitationShafts(): it rains')
     expect(draw(shown)).not.toThrow()
     layers.copy(cloudPreset('cumulonimbus'))
     expect(draw(node)).not.toThrow()
