@@ -45,7 +45,8 @@ export function noiseSlices({ weather, shape, detail }: CloudNoise): NoiseSlices
     )
     const texel = select(cell.y.lessThan(1), first, select(cell.y.lessThan(2), second, third))
     const component = vec4(0, 1, 2, 3).sub(cell.x).abs().lessThan(0.5)
-    const value = texel.dot(vec4(component)).toConst()
+    // As bright on the screen as its value.
+    const value = texel.dot(vec4(component)).max(0).pow(2.2).toConst()
     const isSquare = inside
       .sub(0.5)
       .abs()

@@ -197,9 +197,11 @@ function merge(
 ): CloudLayerParameters {
   const merged = withDefaults('CloudLayer', base, changes)
   requireParameters(merged)
-  const weatherWeights = Object.freeze([...merged.weatherWeights] as const)
-  const { precipitation: falls } = merged
-  const precipitation = falls && checkedPrecipitation(falls, base.precipitation)
-  const wind = Object.freeze({ ...merged.wind })
-  return Object.freeze({ ...merged, weatherWeights, wind, precipitation })
+  const { precipitation } = merged
+  return Object.freeze({
+    ...merged,
+    weatherWeights: Object.freeze([...merged.weatherWeights] as const),
+    wind: Object.freeze({ ...merged.wind }),
+    precipitation: precipitation && checkedPrecipitation(precipitation, base.precipitation)
+  })
 }

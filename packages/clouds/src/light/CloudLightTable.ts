@@ -71,7 +71,7 @@ export class CloudLightTable {
   declare backwardAsymmetry: CloudPhaseParameters['backwardAsymmetry']
   declare forwardShare: CloudPhaseParameters['forwardShare']
   declare scatteringAlbedo: CloudPhaseParameters['scatteringAlbedo']
-  #phase: CloudPhaseParameters
+  #phase: CloudPhaseParameters = fairWeatherPhase
   /** Steps left until the table is that of the phase function. */
   #steps: Generator<void, void, void> | null = null
 
@@ -101,7 +101,6 @@ export class CloudLightTable {
       backwardAsymmetry: number(),
       forwardShare: number()
     }
-    this.#phase = fairWeatherPhase
     this.set(phase)
     this.#apply()
   }
