@@ -61,7 +61,7 @@ export interface CloudLayerParameters {
   /** Wind that the layer drifts with [m/s]. */
   readonly wind: CloudWind
   /**
-   * Rain, snow or hail from it; seen if `clouds` has a `precipitation`. What is left out stays as it is. Null, the default, for nothing, and
+   * Rain, snow or hail from it; `clouds` must have a `precipitation` then. What is left out stays as it is. Null, the default, for nothing, and
    * for defaults from then on.
    */
   readonly precipitation: CloudPrecipitation | null
