@@ -45,7 +45,7 @@ gpuTest(
     }
     const noise = new NoiseTextures()
     const next = random(5)
-    const places = Array.from({ length: 8 }, () => {
+    const places = Array.from({ length: 5 }, () => {
       const [x, z] = [next() - 0.5, next() - 0.5].map(share => 2e4 * share)
       return new Vector3(x, ALTITUDE, z)
     })
@@ -67,8 +67,8 @@ gpuTest(
         if (rate > 1) wet++
       }
     }
-    t.note(`${wet} of 16 are wet`)
-    expectTrue(wet > 3 && wet < 16, `${wet} of 16 are wet`)
+    t.note(`${wet} of 10 are wet`)
+    expectTrue(wet > 2 && wet < 10, `${wet} of 10 are wet`)
 
     // A camera elsewhere asks about the same place.
     layers.at(0).precipitation = { ...falls, share: 1, freezingLevel: 9000 }
