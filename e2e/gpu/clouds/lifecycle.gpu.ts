@@ -208,7 +208,7 @@ gpuTest(
     const renderer = await t.createRenderer({ width: 12, height: 7 })
     const objects = countObjects(renderer)
     const atmosphere = onGround()
-    const noise = new SparseNoise(1)
+    const noise = new SparseNoise()
     const layers = new CloudLayers([{ ...fog, topAltitude: 5000, precipitation: { rate: 1 } }])
     const round = async (): Promise<string> => {
       const crystals = iceCrystals()
