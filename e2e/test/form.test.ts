@@ -192,7 +192,8 @@ describe('medians over windows', () => {
     spectrumSlope: -2,
     interior: [0.7, 0.8, 0.85, 0.85]
   }
-  const windows = (count: number): FormFigures[] => Array.from({ length: count }, () => met)
+  const windows = (count: number, changes: Partial<FormFigures> = {}): FormFigures[] =>
+    Array.from({ length: count }, () => ({ ...met, ...changes }))
   const missed = (judged: FormFigures[], preset: CloudPresetName = 'fairWeather'): string[] =>
     formResult(preset, judged, [])
       .rows.filter(({ isMet }) => !isMet)
@@ -206,14 +207,14 @@ describe('medians over windows', () => {
   })
 
   it('miss what is out of its limits, or not known in all of them', () => {
-    const dim = windows(WINDOWS).map(each => ({ ...each, interior: [0.7, 0.8, 0.79, 0.85] }))
+    const dim = windows(WINDOWS, { interior: [0.7, 0.8, 0.79, 0.85] })
     expect(missed(dim)).toEqual(['extinction 40–80 m inside'])
     const unknown = [...windows(WINDOWS - 1), { ...met, aspect: NaN }]
     expect(missed(unknown)).toEqual(['height over width'])
   })
 
   it('have limits for fair weather alone', () => {
-    const tall = windows(WINDOWS).map(each => ({ ...each, aspect: 3 }))
+    const tall = windows(WINDOWS, { aspect: 3 })
     expect(missed(tall)).toEqual(['height over width'])
     expect(missed(tall, 'cumulonimbus')).toEqual([])
   })

@@ -9,7 +9,7 @@ import { createClouds, type CloudsArgs } from '../src/clouds.scene'
 import * as stories from '../src/clouds.stories'
 import { createLand, type LandStory } from '../src/globe/land'
 
-vi.mock('../src/globe/land', () => ({ createLand: vi.fn() }))
+vi.mock('../src/globe/land', () => ({ createLand: vi.fn<() => void>() }))
 vi.mock('../src/mount', () => ({ mount: () => () => null }))
 
 interface Pipeline {
