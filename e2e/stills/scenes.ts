@@ -82,9 +82,9 @@ const presets: Record<CloudPresetName, PresetView> = {
   altocumulus: { azimuth: 30, pitch: 24 },
   cirrus: { azimuth: 20, pitch: 18 },
   mixed: { azimuth: 300, pitch: 14 },
-  shower: { azimuth: 90, pitch: 10, place: { longitude: 140.6426, latitude: 35.2626 } },
+  shower: { azimuth: 45, pitch: 12, place: { longitude: 139.853, latitude: 35.845 } },
   nimbostratus: { azimuth: 30, pitch: 7, place: { longitude: 22.3, latitude: 46.7 } },
-  snowShower: { azimuth: 20, pitch: 9, place: { longitude: 20, latitude: 45 } },
+  snowShower: { azimuth: 110, pitch: 9, place: { longitude: 20.3, latitude: 45.2 } },
   hailstorm: { azimuth: 20, pitch: 10, place: { longitude: 139.853, latitude: 35.845 } },
   fog: { azimuth: 30, pitch: -5, altitude: 750 }
 }
