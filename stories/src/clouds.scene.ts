@@ -81,11 +81,11 @@ export async function createClouds(
     atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
     // #region clouds
     // #shown const preset = 'fairWeather' // or another
-    // #shown const quality = 'medium'
+    // #shown const quality = 'medium' as const
     // #shown const worldMap = null // of cloud cover, for globes
     const layers = cloudPreset(preset)
-    const falls = [...layers].some(layer => layer.precipitation?.rate)
-    const precipitation = falls ? precipitationShafts() : undefined // rain and snow of those that have some
+    const falls = [...layers].some(layer => layer.precipitation?.rate) // rain or snow
+    const precipitation = falls ? precipitationShafts() : undefined
     const options = { quality, worldMap, precipitation }
     const node = clouds(color, depth, camera, atmosphere, layers, options)
     pipeline.outputNode = node
