@@ -101,9 +101,7 @@ function cameraOf({ altitude, view, fieldOfView, land }: Still, aspect: number):
 /** Rain with its bows and snow under layers that have any. */
 function fallOf(layers: CloudLayers): PrecipitationShafts | undefined {
   const rate = Math.max(...[...layers].map(layer => layer.precipitation?.rate ?? 0))
-  return rate > 0
-    ? precipitationShafts({ drops: raindrops({ rate: Math.max(rate, 0.5) }) })
-    : undefined
+  return rate > 0 ? precipitationShafts({ drops: raindrops({ rate }) }) : undefined
 }
 
 /** Time over which a picture gathers a flash's light [s]. */

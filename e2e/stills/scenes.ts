@@ -64,10 +64,16 @@ export interface ValleyStill {
 /** A still of any kind. */
 export type AnyStill = Still | ValleyStill | TerrainStill | StreetStill
 
-/** The presets from the ground: where to look. */
-const presets: Partial<
-  Record<CloudPresetName, { azimuth: number; pitch: number; place?: Still['place'] }>
-> = {
+/** View of a preset. */
+interface PresetView extends Pick<Still, 'place'> {
+  azimuth: number
+  pitch: number
+  /** Altitude of the camera, default 2 [m]. */
+  altitude?: number
+}
+
+/** The presets as they are, from the ground; fog from above. */
+const presets: Record<CloudPresetName, PresetView> = {
   fairWeather: { azimuth: 330, pitch: 14 },
   stratocumulus: { azimuth: 30, pitch: 14 },
   overcast: { azimuth: 30, pitch: 10 },
@@ -75,7 +81,12 @@ const presets: Partial<
   congestus: { azimuth: 330, pitch: 14 },
   altocumulus: { azimuth: 30, pitch: 24 },
   cirrus: { azimuth: 20, pitch: 18 },
-  mixed: { azimuth: 300, pitch: 14 }
+  mixed: { azimuth: 300, pitch: 14 },
+  shower: { azimuth: 45, pitch: 12, place: { longitude: 139.853, latitude: 35.845 } },
+  nimbostratus: { azimuth: 30, pitch: 7, place: { longitude: 22.3, latitude: 46.7 } },
+  snowShower: { azimuth: 110, pitch: 9, place: { longitude: 20.3, latitude: 45.2 } },
+  hailstorm: { azimuth: 20, pitch: 10, place: { longitude: 139.853, latitude: 35.845 } },
+  fog: { azimuth: 30, pitch: -5, altitude: 750 }
 }
 
 /** Suns of the presets: elevation, and azimuth from where the camera looks [°]. */
@@ -86,19 +97,20 @@ const suns = {
   set: { elevation: -3, turn: 15, about: 'after sunset: only high clouds still have sun' }
 }
 
-const fromTheGround: Still[] = Object.entries(presets).flatMap(([preset, { place, ...view }]) =>
-  Object.entries(suns).map(([name, { elevation, turn, about }]) => ({
-    name: `${preset}-${name}`,
-    about,
-    clouds: { preset: preset as CloudPresetName },
-    altitude: 2,
-    sun: { elevation, azimuth: (view.azimuth + turn + 360) % 360 },
-    view,
-    place,
-    // A low sun's light comes through much air, and not where clouds stand before it.
-    shafts: elevation < 10 ? (true as const) : undefined,
-    land: 'hills' as const
-  }))
+const fromTheGround: Still[] = Object.entries(presets).flatMap(
+  ([preset, { place, altitude = 2, ...view }]) =>
+    Object.entries(suns).map(([name, { elevation, turn, about }]) => ({
+      name: `${preset}-${name}`,
+      about,
+      clouds: { preset: preset as CloudPresetName },
+      altitude,
+      sun: { elevation, azimuth: (view.azimuth + turn + 360) % 360 },
+      view,
+      place,
+      // A low sun's light comes through much air, and not where clouds stand before it.
+      shafts: elevation < 10 ? (true as const) : undefined,
+      land: 'hills' as const
+    }))
 )
 
 /** Rain, with the sun behind. */

@@ -1,9 +1,11 @@
+import type { CloudPresetName } from '@welkin/clouds'
 import fc from 'fast-check'
 import { describe, expect, it } from 'vitest'
-import { formFigures } from '../validate/form/figures'
+import { formFigures, type FormFigures } from '../validate/form/figures'
 import { blurMask, squaredDistances } from '../validate/form/filters'
 import { boundaryFaces, labelPieces, type Mask } from '../validate/form/grid'
 import { perimeterDimension, piecesOf } from '../validate/form/pieces'
+import { formResult, WINDOWS } from '../validate/form/result'
 import { logSlope, sizeSlope, spectrumSlope } from '../validate/form/slopes'
 
 /** A mask of the cells for which a test holds. */
@@ -172,4 +174,48 @@ it('figures of a field of upright boxes', () => {
   expect(() =>
     formFigures({ nx: 2, ny: 2, nz: 1, dx: 1, dz: 1, z0: 0, data: new Float32Array(4) })
   ).toThrow('no cloud')
+})
+
+describe('medians over windows', () => {
+  const met: FormFigures = {
+    cover: 0.2,
+    horizontalDimension: 1.4,
+    verticalDimension: 1.4,
+    boundaryLeft: [0.6, 0.4, 0.2],
+    peakHeight: 0.1,
+    midOverPeak: 0.3,
+    extinctionRise: 1.4,
+    aspect: 0.8,
+    sizeSlope: -1.7,
+    detached: 0.05,
+    piecesPerKm2: 4,
+    spectrumSlope: -2,
+    interior: [0.7, 0.8, 0.85, 0.85]
+  }
+  const windows = (count: number, changes: Partial<FormFigures> = {}): FormFigures[] =>
+    Array.from({ length: count }, () => ({ ...met, ...changes }))
+  const missed = (judged: FormFigures[], preset: CloudPresetName = 'fairWeather'): string[] =>
+    formResult(preset, judged, [])
+      .rows.filter(({ isMet }) => !isMet)
+      .map(({ name }) => name)
+
+  it('are of five, or there are none', () => {
+    expect(missed(windows(WINDOWS))).toEqual([])
+    expect(() => formResult('fairWeather', windows(WINDOWS - 1), [0.2, 0.5])).toThrow(
+      '--form: only 4 of 5 windows of fairWeather have a cover from 0.1 to 0.35, of 0.20, 0.50: give --coverage'
+    )
+  })
+
+  it('miss what is out of its limits, or not known in all of them', () => {
+    const dim = windows(WINDOWS, { interior: [0.7, 0.8, 0.79, 0.85] })
+    expect(missed(dim)).toEqual(['extinction 40–80 m inside'])
+    const unknown = [...windows(WINDOWS - 1), { ...met, aspect: NaN }]
+    expect(missed(unknown)).toEqual(['height over width'])
+  })
+
+  it('have limits for fair weather alone', () => {
+    const tall = windows(WINDOWS, { aspect: 3 })
+    expect(missed(tall)).toEqual(['height over width'])
+    expect(missed(tall, 'cumulonimbus')).toEqual([])
+  })
 })

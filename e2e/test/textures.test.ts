@@ -17,12 +17,18 @@ import {
   milkyWay,
   moon,
   planetGround,
+  precipitationOverlay,
+  PrecipitationShelter,
   raindrops,
+  rainfall,
   skyBackground,
   skyEnvironment,
+  snowfall,
   stars,
   sunFlare,
-  surfaceLighting
+  surfaceLighting,
+  SurfaceWater,
+  wetSurface
 } from '@welkin/atmosphere'
 import type { LightShafts, SkyLayer } from '@welkin/atmosphere'
 import {
@@ -33,6 +39,7 @@ import {
   cloudSkyLight,
   cloudWorldMap,
   DropletLightTable,
+  lightning,
   precipitationShafts
 } from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
@@ -43,6 +50,7 @@ import {
   MeshStandardMaterial,
   PerspectiveCamera,
   PlaneGeometry,
+  PointLight,
   RepeatWrapping,
   Scene
 } from 'three'
@@ -319,10 +327,48 @@ it('features of the clouds sample as many textures as their README says', async 
     }, name)
     expect([name, cast]).toEqual([name, textures])
   }
+  const flashes = await inPass(world => {
+    const node = world.clouds()
+    lightning(node)
+    return node
+  })
+  expect([`${flashes - withClouds}`, '0']).toEqual(stated('clouds', '`lightning`'))
   const dimmed = await inLit(world => {
     cloudSkyLight(world.sky, world.clouds())
   })
   expect(['–', `${dimmed - lit}`]).toEqual(stated('clouds', '`cloudSkyLight`'))
+})
+
+it('near rain and wet ground sample as many textures as the README says', async () => {
+  const air = await inPass(world => world.air)
+  /** Textures of drops or flakes under sun, sky and lamps, and a roof. */
+  const falling = (make: typeof rainfall, name: string, hasShelter: boolean): Promise<number> =>
+    count(name, renderer => {
+      const { atmosphere, camera, scene, sun, sky } = new World()
+      const shelter = hasShelter ? new PrecipitationShelter(scene) : undefined
+      scene.add(make(atmosphere, { rate: 5, lights: [sun, sky, new PointLight()], shelter }))
+      return () => renderer.render(scene, camera)
+    })
+  const near = await Promise.all(
+    [false, true].flatMap(hasShelter => [
+      falling(rainfall, 'Welkin.Rainfall', hasShelter),
+      falling(snowfall, 'Welkin.Snowfall', hasShelter)
+    ])
+  )
+  expect(near).toEqual([0, 0, 0, 0])
+  expect(stated('atmosphere', '`rainfall`')).toEqual(['0', '–'])
+  const over = await inPass(({ air, atmosphere, camera, depth, sun, sky }) => {
+    const rain = rainfall(atmosphere, { rate: 5, lights: [sun, sky], depth, depthCamera: camera })
+    return precipitationOverlay(air, camera, [rain])
+  })
+  expect([`${over - air}`, '–']).toEqual(stated('atmosphere', '`precipitationOverlay`'))
+  const lit = await inLit(() => undefined)
+  const wet = await inLit(({ material }) => {
+    const water = new SurfaceWater()
+    water.water = 1
+    Object.assign(material, wetSurface(water))
+  })
+  expect(['–', `${wet - lit}`]).toEqual(stated('atmosphere', '`wetSurface`'))
 })
 
 /** Look-ups of textures in a shader's `main`, by the conditions and loops that they stand in, outermost first. */

@@ -155,9 +155,13 @@ async function main(): Promise<void> {
   // What the tools on the way have to say must not get between the JSON.
   const print = console.log
   if (values.json) console.log = console.error
+  const tellMissed = (missed: readonly string[]): void => {
+    if (values.check && missed.length > 0) process.exitCode = 1
+    if (values.json) for (const goal of missed) console.error(`missed: ${goal}`)
+  }
   if (values.form !== undefined) {
     const form = await validateForm(preset('form', values.form), where.backend, coverage.coverage)
-    if (values.check && form.rows.some(row => !row.isMet)) process.exitCode = 1
+    tellMissed(form.rows.filter(row => !row.isMet).map(({ name }) => name))
     if (values.json) print(JSON.stringify({ form }, null, 2))
     else printForm(form)
     return
@@ -168,8 +172,7 @@ async function main(): Promise<void> {
     const names = Object.keys(cloudQualities) as CloudQualityName[]
     const quality = choice('quality', values.quality, names)
     const cloudLight = await validateCloudLight(file, where.backend, quality)
-    const missed = missedCloudLightGoals(cloudLight)
-    if (values.check && missed.length > 0) process.exitCode = 1
+    tellMissed(missedCloudLightGoals(cloudLight))
     if (values.json) print(JSON.stringify({ cloudLight }, null, 2))
     else printCloudLight(cloudLight)
     return
@@ -194,11 +197,9 @@ async function main(): Promise<void> {
       const { errors, ...shafts } = figures
       const { backend, quality, isForward } = ways[i]
       const title = `${isForward ? 'materials' : 'post effect'}, ${backend}, ${quality}`
-      const missed = missedShaftGoals(shafts)
-      if (values.check && missed.length > 0) process.exitCode = 1
+      tellMissed(missedShaftGoals(shafts).map(goal => `${title}: ${goal}`))
       all.push({ ...ways[i], ...shafts })
-      if (values.json) for (const goal of missed) console.error(`missed: ${title}: ${goal}`)
-      else printShafts(title, { ...shafts, errors }, worst)
+      if (!values.json) printShafts(title, { ...shafts, errors }, worst)
     }
     // One way as itself, several as a list: one text of JSON.
     if (values.json) print(JSON.stringify({ shafts: all.length === 1 ? all[0] : all }, null, 2))
@@ -237,7 +238,7 @@ async function main(): Promise<void> {
   )
   const missed = missedGoals(quantities, statistics, spectral)
   if (clouds !== undefined) missed.push(...missedCloudGoals(clouds))
-  if (values.check && missed.length > 0) process.exitCode = 1
+  tellMissed(missed)
   if (values.json) {
     const all = {
       ...statistics,
@@ -245,7 +246,6 @@ async function main(): Promise<void> {
       ...(clouds === undefined ? {} : { clouds })
     }
     print(JSON.stringify(all, null, 2))
-    for (const goal of missed) console.error(`missed: ${goal}`)
     return
   }
   console.log(`${where.path} path on ${where.backend}\n`)

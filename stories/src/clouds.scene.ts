@@ -4,7 +4,8 @@ import {
   cloudsDebug,
   cloudShadow,
   cloudSkyLight,
-  cloudWorldMap
+  cloudWorldMap,
+  precipitationShafts
 } from '@welkin/clouds'
 import type { CloudPresetName, CloudQuality, CloudQualityName, CloudsDebug } from '@welkin/clouds'
 import { shadow } from 'three/tsl'
@@ -13,7 +14,8 @@ import { cloudCover } from './clouds/cloudCover'
 import { layerArgs, layerParameters } from './clouds/layerArgs'
 import type { LayerArgs } from './clouds/layerArgs'
 import { createBalloons, createCockpit } from './clouds/props'
-import { stages } from './clouds/stages'
+import { noiseSlices } from './clouds/noiseSlices'
+import { ambientAt, stages } from './clouds/stages'
 import type { Stage } from './clouds/stages'
 import { createLand } from './globe/land'
 import type { Place } from './globe/places'
@@ -35,6 +37,9 @@ export interface CloudsArgs extends RendererArgs, TimeArgs, LayerArgs {
   world: boolean
   /** Stage up to which the layers are made. */
   stage: Stage
+  /** Slices of the noise in place of the clouds, and their place in it, in [0, 1]. */
+  noise: boolean
+  slice: number
   props: 'none' | 'cockpit' | 'balloons'
   /** [degrees] */
   longitude: number
@@ -76,10 +81,13 @@ export async function createClouds(
     atmosphere.frame = 'ecef' // the world's axes are the Earth's, its origin the Earth's centre
     // #region clouds
     // #shown const preset = 'fairWeather' // or another
-    // #shown const quality = 'medium'
+    // #shown const quality = 'medium' as const
     // #shown const worldMap = null // of cloud cover, for globes
     const layers = cloudPreset(preset)
-    const node = clouds(color, depth, camera, atmosphere, layers, { quality, worldMap })
+    const falls = [...layers].some(layer => layer.precipitation?.rate) // rain or snow
+    const precipitation = falls ? precipitationShafts() : undefined
+    const options = { quality, worldMap, precipitation }
+    const node = clouds(color, depth, camera, atmosphere, layers, options)
     pipeline.outputNode = node
     Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) }) // with three's own
     cloudSkyLight(sky, node) // the sky's light, through clouds and from them
@@ -112,15 +120,18 @@ export async function createClouds(
     }
 
     const applyStage = ({ stage }: CloudsArgs): void => {
+      node.ambient = ambientAt(stage)
       for (let i = 0; i < layers.length; i++) {
         layers.at(i).set({ ...finished.at(i).parameters, ...stages[stage] })
       }
     }
 
     const debug = cloudsDebug(node, null)
+    const slices = noiseSlices(node.noise)
     const show = (current: CloudsArgs): void => {
       debug.view = current.debug === 'off' ? null : current.debug
-      const output = debug.view === null ? node : debug
+      slices.place.value = current.slice
+      const output = current.noise ? slices.node : debug.view === null ? node : debug
       if (pipeline.outputNode === output) return
       pipeline.outputNode = output
       pipeline.needsUpdate = true
@@ -144,7 +155,8 @@ export async function createClouds(
         const now = performance.now()
         node.time = (node.time ?? 0) + ((now - before) / 1000) * lapse
         before = now
-        if (args.frame) node.field.bake(renderer)
+        // The clouds' node draws its noise with the clouds.
+        if (args.frame || pipeline.outputNode === slices.node) node.field.bake(renderer)
         props?.follow(camera)
       },
       dispose() {

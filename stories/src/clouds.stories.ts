@@ -98,6 +98,8 @@ const meta: Meta<CloudsArgs> = {
     frame,
     shown: hidden,
     stage: hidden,
+    noise: hidden,
+    slice: hidden,
     props: hidden,
     path: hidden
   },
@@ -108,6 +110,8 @@ const meta: Meta<CloudsArgs> = {
     timeLapse: 1,
     world: false,
     stage: 'cloud',
+    noise: false,
+    slice: 0.5,
     props: 'none',
     // 2 m above a meadow.
     longitude: -84.178,
@@ -154,6 +158,71 @@ export const Storm: Story = {
     hour: 6.5
   },
   tags: ['screenshot', 'webgpu-only']
+}
+
+/** Towering cumulus of an afternoon, heads upon heads. */
+export const Congestus: Story = {
+  args: {
+    ...sky('congestus'),
+    longitude: 139.77,
+    latitude: 35.68,
+    altitude: 300,
+    heading: 330,
+    pitch: 14,
+    hour: 6.5
+  }
+}
+
+/** Small regular cells, lit aside. */
+export const Altocumulus: Story = {
+  args: {
+    ...sky('altocumulus'),
+    longitude: 139.77,
+    latitude: 35.68,
+    altitude: 300,
+    heading: 30,
+    pitch: 24,
+    hour: 0.5
+  }
+}
+
+/** A closed deck, and grey rain from it that hides the horizon. */
+export const Nimbostratus: Story = {
+  args: {
+    ...sky('nimbostratus'),
+    longitude: 22.3,
+    latitude: 46.7,
+    altitude: 300,
+    heading: 30,
+    pitch: 7,
+    hour: 9
+  }
+}
+
+/** Rain and hail below a storm's tower: steep shafts of stones in what leans with the wind. */
+export const Hailstorm: Story = {
+  args: {
+    ...sky('hailstorm'),
+    longitude: 139.853,
+    latitude: 35.845,
+    altitude: 300,
+    heading: 20,
+    pitch: 10,
+    hour: 6.5
+  }
+}
+
+/** Morning over a sea of fog, out of which ridges stand. */
+export const Fog: Story = {
+  args: {
+    ...sky('fog'),
+    baseAltitude: 250,
+    topAltitude: 450,
+    altitude: 700,
+    heading: 60,
+    pitch: -5,
+    hour: 11.6
+  }
 }
 
 /** The sun is about to set, and reddens ice clouds from below. */
@@ -232,6 +301,18 @@ export const HowACloudIsMade: Story = {
       description: 'How much of their form clouds have; the parameters below set the rest',
       options: Object.keys(stages),
       control: { type: 'inline-radio', labels: stageNames },
+      table: { disable: false }
+    },
+    noise: {
+      name: 'Slices of the noise',
+      description:
+        'Rows: weather (cumulus, stratocumulus, cumulonimbus, cirrus), shape (coarse and fine billows, curl), detail',
+      control: 'boolean',
+      table: { disable: false }
+    },
+    slice: {
+      name: 'Place of the slices',
+      control: { type: 'range', min: 0, max: 1, step: 0.005 },
       table: { disable: false }
     }
   },

@@ -12,7 +12,8 @@ import {
   CloudCover,
   cloudFogLight,
   CloudLightTable,
-  cloudPreset
+  cloudPreset,
+  precipitationShafts
 } from '@welkin/clouds'
 import { BoxGeometry, Mesh, MeshBasicMaterial, Vector3 } from 'three'
 import { CloudView, SparseNoise, viewSize } from '../harness/cloud-view'
@@ -32,7 +33,9 @@ gpuTest(
     atmosphere.add(mist, far)
     const layers = cloudPreset('overcast')
     const light = new CloudLightTable()
-    const view = new CloudView(renderer, atmosphere, layers, { noise: new SparseNoise(), light })
+    const noise = new SparseNoise()
+    const precipitation = precipitationShafts()
+    const view = new CloudView(renderer, atmosphere, layers, { noise, light, precipitation })
     const { camera, node, scene } = view
     const wall = new Mesh(new BoxGeometry(4000, 4000, 10), new MeshBasicMaterial({ color: 0 }))
     wall.position.z = -2000
@@ -69,6 +72,18 @@ gpuTest(
         expectTrue(Math.abs(got / expected - 1) < 0.35, `${name}, ${elevation}°: ${got}`)
       }
     }
+
+    // Rain from the deck dims what is in it, on the way down to the ground. Fog hides what falls before it.
+    mist.density = 0.05
+    far.density = 0
+    setClouds(1)
+    const [dry, dryGround] = [await look(), ground(cover)]
+    layers.at(0).precipitation = { rate: 100, share: 1 }
+    const [rainy, rainyGround] = [(await look()) / dry, ground(cover) / dryGround]
+    layers.at(0).precipitation = null
+    t.note(`in rain ${rainy.toFixed(3)} for ${rainyGround.toFixed(3)}`)
+    expectTrue(rainyGround < 0.85, `rain leaves ${rainyGround} of the light on the ground`)
+    expectTrue(Math.abs(rainy / rainyGround - 1) < 0.03, `fog in rain: ${rainy} for ${rainyGround}`)
 
     // Light shafts of these clouds dim the fog themselves.
     mist.density = 0.004

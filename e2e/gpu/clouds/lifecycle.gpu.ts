@@ -1,13 +1,24 @@
-import { SkyLightProbe, SunDirectionalLight } from '@welkin/atmosphere'
+import {
+  iceCrystals,
+  raindrops,
+  SkyLightProbe,
+  SunDirectionalLight,
+  SurfaceWater,
+  wetSurface
+} from '@welkin/atmosphere'
 import {
   CloudLayers,
   CloudLightTable,
   cloudShadow,
   cloudSkyLight,
+  DropletLightTable,
+  lightning,
+  PrecipitationGauge,
   precipitationShafts
 } from '@welkin/clouds'
-import { BoxGeometry, Mesh, MeshLambertMaterial } from 'three'
+import { BoxGeometry, Mesh, MeshLambertMaterial, Vector3 } from 'three'
 import { shadow } from 'three/tsl'
+import { MeshStandardNodeMaterial } from 'three/webgpu'
 import { drawToFloat } from '../harness/atmosphere'
 import {
   CloudView,
@@ -190,3 +201,44 @@ gpuTest('leaves no memory behind', async t => {
   light.dispose()
   atmosphere.dispose()
 })
+
+gpuTest(
+  'lightning, droplets, crystals, drops, a gauge and wet ground leave no memory behind',
+  async t => {
+    const renderer = await t.createRenderer({ width: 12, height: 7 })
+    const objects = countObjects(renderer)
+    const atmosphere = onGround()
+    const noise = new SparseNoise()
+    const layers = new CloudLayers([{ ...fog, topAltitude: 5000, precipitation: { rate: 1 } }])
+    const round = async (): Promise<string> => {
+      const crystals = iceCrystals()
+      const light = new DropletLightTable({ crystals })
+      const drops = raindrops()
+      const precipitation = precipitationShafts({ drops })
+      const view = new CloudView(renderer, atmosphere, layers, { noise, light, precipitation })
+      const storm = lightning(view.node)
+      const gauge = new PrecipitationGauge(view.node)
+      const ground = new Mesh(new BoxGeometry(400, 1, 400), new MeshStandardNodeMaterial())
+      Object.assign(ground.material, wetSurface(new SurfaceWater()))
+      view.scene.add(ground)
+      storm.strike({ at: new Vector3(0, 0, -4000) })
+      await view.draw(3)
+      expectTrue(storm.isFlashing, 'no flash')
+      gauge.update(renderer, view.camera.position)
+      while (gauge.isReading) await nextFrame()
+      ground.geometry.dispose()
+      ground.material.dispose()
+      for (const each of [gauge, storm, view, light, crystals, drops]) each.dispose()
+      await finishWork(renderer)
+      return `${JSON.stringify(renderer.info.memory)}, objects ${JSON.stringify(objects)}`
+    }
+    await round()
+    const before = await round()
+    const after = await round()
+    expectTrue(after === before, `before ${before}\nafter ${after}`)
+    noise.dispose()
+    atmosphere.dispose()
+  },
+  // On WebGL the same classes free what they make; its shaders take long to compile.
+  { backends: ['webgpu'] }
+)

@@ -1,6 +1,18 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { CloudLayers, CloudLightTable, CloudNoise, cloudPreset, cloudsDebug } from '@welkin/clouds'
-import type { CloudLayerParameters, CloudPresetName, CloudsDebug } from '@welkin/clouds'
+import {
+  CloudLayers,
+  CloudLightTable,
+  CloudNoise,
+  cloudPreset,
+  cloudsDebug,
+  precipitationShafts
+} from '@welkin/clouds'
+import type {
+  CloudLayerParameters,
+  CloudPresetName,
+  CloudsDebug,
+  PrecipitationShafts
+} from '@welkin/clouds'
 import { Ellipsoid } from '@welkin/geo'
 import { Vector3 } from 'three'
 import { expectLight, random } from '../harness/atmosphere'
@@ -52,12 +64,16 @@ function randomLayer(next: () => number): Partial<CloudLayerParameters> {
 }
 
 /** A view of layers about the globe, in coordinates of its centre. */
-async function cloudsOfGlobe(t: GpuContext, layers: CloudLayers) {
+async function cloudsOfGlobe(
+  t: GpuContext,
+  layers: CloudLayers,
+  precipitation?: PrecipitationShafts
+) {
   const renderer = await t.createRenderer(viewSize)
   const atmosphere = new Atmosphere()
   atmosphere.frame = 'ecef'
   const shared = { noise: new CloudNoise(), light: new CloudLightTable() }
-  const view = new CloudView(renderer, atmosphere, layers, shared)
+  const view = new CloudView(renderer, atmosphere, layers, { ...shared, precipitation })
   const dispose = (): void => {
     for (const made of [view, shared.noise, shared.light, atmosphere]) made.dispose()
   }
@@ -117,13 +133,15 @@ gpuTest(
   { timeoutSeconds: 240 }
 )
 
-const presets: CloudPresetName[] = ['congestus', 'overcast', 'cumulonimbus', 'mixed']
+/** Rain, snow and hail under towers, a deck and storms; and clouds of three kinds. */
+const presets: CloudPresetName[] = ['snowShower', 'nimbostratus', 'hailstorm', 'mixed']
 
 gpuTest(
   'clouds of a preset give finite light from any camera at any time',
   async t => {
     const layers = new CloudLayers([{}, {}, {}])
-    const { renderer, atmosphere, view, dispose } = await cloudsOfGlobe(t, layers)
+    const medium = precipitationShafts()
+    const { renderer, atmosphere, view, dispose } = await cloudsOfGlobe(t, layers, medium)
     const { camera, node } = view
     camera.far = 1e9
     camera.updateProjectionMatrix()

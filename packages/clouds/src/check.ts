@@ -30,14 +30,13 @@ export function checkClouds(where: string, value: { readonly shadows: unknown })
   if (value?.shadows === undefined) fail(where, 'clouds must be a CloudsNode', value)
 }
 
-/** @throws If layers have precipitation, and nothing shows it. */
+/** @throws If layers have precipitation, and a `CloudsNode` nothing that shows it. */
 export function checkPrecipitation(
-  where: string,
   layers: Iterable<{ readonly precipitation: { readonly rate: number } | null }>,
   medium: object | undefined
 ): void {
   if (medium === undefined && [...layers].some(layer => layer.precipitation?.rate)) {
-    fail(where, 'precipitation must be given: layers have some')
+    fail('CloudsNode', 'precipitation must be precipitationShafts(): it rains')
   }
 }
 

@@ -20,6 +20,7 @@ export {
   precipitationShafts,
   type PrecipitationShaftsOptions
 } from './precipitation/PrecipitationShafts'
+export { PrecipitationGauge } from './precipitation/PrecipitationGauge'
 export { Lightning, lightning } from './lightning/Lightning'
 export type {
   LightningEvent,

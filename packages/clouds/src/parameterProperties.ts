@@ -15,7 +15,7 @@ export function parameterProperties<K extends string>(
   names: object,
   all: K
 ): void {
-  for (const name of Object.keys(names)) {
+  for (const name in names) {
     Object.defineProperty(prototype, name, {
       get(this: Readonly<Record<K, Record<string, unknown>>>) {
         return this[all][name]

@@ -94,6 +94,10 @@ const cases: [message: string, call: () => unknown][] = [
     () => (new DropletLightTable().forwardShare = 0.5)
   ],
   [
+    'CloudLightTable: dropletRadius needs a DropletLightTable',
+    () => new CloudLightTable().set(wrong({ dropletRadius: 8 }))
+  ],
+  [
     "CloudLightTable: unknown option 'forwardAsymetry', did you mean 'forwardAsymmetry'?",
     () => new CloudLightTable(wrong({ forwardAsymetry: 0 }))
   ],
@@ -122,7 +126,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => clouds(wrong(new Scene()), float(1), camera, atmosphere, layers)
   ],
   [
-    'CloudsNode: worldMap must be a CloudWorldMap, by cloudWorldMap(), or null, got a Texture',
+    'CloudsNode: worldMap must be a CloudWorldMap or null, got a Texture',
     () => make({ worldMap: new Texture() })
   ],
   ['CloudWorldMap: texture must be a Texture, got a Mesh', () => cloudWorldMap(wrong(new Mesh()))],
@@ -175,7 +179,7 @@ const cases: [message: string, call: () => unknown][] = [
     () => cloudEnvironment(wrong(atmosphere))
   ],
   [
-    "cloudPreset: name must be 'fairWeather', 'congestus', 'stratocumulus', 'overcast', 'cumulonimbus', 'altocumulus', 'cirrus', 'mixed', 'shower', 'nimbostratus', 'snowShower' or 'hailstorm', got 'fair'",
+    "cloudPreset: name must be 'fairWeather', 'congestus', 'stratocumulus', 'overcast', 'cumulonimbus', 'altocumulus', 'cirrus', 'mixed', 'shower', 'nimbostratus', 'snowShower', 'hailstorm' or 'fog', got 'fair'",
     () => cloudPreset(wrong('fair'))
   ],
   ['CloudLayer: options must be an object such as {', () => new CloudLayer(wrong(layer))],

@@ -1,7 +1,6 @@
 import { setOptions } from '@welkin/geo'
 import { checkRange } from '../check'
 import { rainRow } from './cpu/rainRow'
-import { RAIN_RATES } from './cpu/rainRates'
 import { PhaseTexture } from './PhaseTexture'
 import type { ScatteringAngles, ScatteringPhase } from './ScatteringPhase'
 import { samplePhase } from './tsl/samplePhase'
@@ -9,7 +8,7 @@ import type { Vec4 } from '../tsl-types'
 
 /** Options of {@link Raindrops}. */
 export interface RaindropsOptions {
-  /** Rate of the rain, in [0.5, 50], default 5 [mm/h]: drizzle has 0.5, a shower 10, a cloudburst 50. */
+  /** Rate of the rain, in [0, 300], default 5 [mm/h]: drizzle has 0.5, a shower 10, a cloudburst 50. */
   rate?: number
 }
 
@@ -50,13 +49,13 @@ export class Raindrops implements ScatteringPhase {
     return setOptions('Raindrops', this, settings, 'rate')
   }
 
-  /** Rate of the rain, in [0.5, 50] [mm/h]. */
+  /** Rate of the rain, in [0, 300] [mm/h]. Light is scattered as by rates from 0.5 to 50, below and above as at those. */
   get rate(): number {
     return this.#rate
   }
 
   set rate(value: number) {
-    checkRange('Raindrops', 'rate', value, RAIN_RATES[0], RAIN_RATES.at(-1)!)
+    checkRange('Raindrops', 'rate', value, 0, 300)
     this.#rate = value
     const { texels, moments } = rainRow(value)
     this.#texture.write(texels)

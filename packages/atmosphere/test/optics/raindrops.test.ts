@@ -99,8 +99,22 @@ describe('rain', () => {
     rain.dispose()
   })
 
+  it('scatters below and above the rates of its table as at their ends, and dims by its own', () => {
+    for (const [rate, end] of [
+      [0, 0.5],
+      [0.07, 0.5],
+      [300, 50]
+    ]) {
+      expect(rainRow(rate)).toEqual(rainRow(end))
+      const rain = raindrops({ rate })
+      expect(1000 * rain.extinction).toBeCloseTo(0.33 * rate ** 0.64, 9)
+      rain.dispose()
+    }
+  })
+
   throwsEach('rain', [
-    ['Raindrops: rate must be in [0.5, 50], got 0', () => raindrops({ rate: 0 })],
+    ['Raindrops: rate must be in [0, 300], got -1', () => raindrops({ rate: -1 })],
+    ['Raindrops: rate must be in [0, 300], got 301', () => raindrops({ rate: 301 })],
     ["Raindrops: unknown option 'radius', there are rate", () => raindrops(wrong({ radius: 1 }))]
   ])
 })

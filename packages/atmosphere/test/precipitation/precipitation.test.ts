@@ -29,15 +29,12 @@ const gunnKinzer = [
   [5, 9.09]
 ]
 
-/** Atlas et al. 1973, eq. 4 [m/s]. */
-const dropSpeed = (diameter: number): number => 9.65 - 10.3 * Math.exp(-0.6 * diameter)
-
 /** Water that falls [mm/h], by sums over sizes. */
 function flux(rate: number, sizes: typeof raindropSizes, speed: (d: number) => number): number {
   let sum = 0
   for (let d = 0.1; d < 8; d += 0.01) {
     const volume = (Math.PI / 6) * (d + 0.005) ** 3 // mm³
-    sum += numberBetween(sizes(rate), d, d + 0.01) * volume * Math.max(speed(d), 0)
+    sum += numberBetween(sizes(rate), d, d + 0.01) * volume * speed(d)
   }
   return sum * 3.6e-3
 }
@@ -52,19 +49,26 @@ describe('sizes', () => {
 
   it('carry about the water of their rate at the measured speeds', () => {
     for (const rate of [1, 5, 25, 100]) {
-      expect(flux(rate, raindropSizes, dropSpeed) / rate).toBeGreaterThan(0.8)
-      expect(flux(rate, raindropSizes, dropSpeed) / rate).toBeLessThan(1.2)
+      expect(flux(rate, raindropSizes, rain.speed) / rate).toBeGreaterThan(0.8)
+      expect(flux(rate, raindropSizes, rain.speed) / rate).toBeLessThan(1.2)
     }
-    const flakeSpeed = (d: number): number => 0.8 * (1000 * flakeWidth(d)) ** 0.16
     for (const rate of [0.5, 1, 2.5]) {
-      expect(flux(rate, snowflakeSizes, flakeSpeed) / rate).toBeGreaterThan(0.75)
-      expect(flux(rate, snowflakeSizes, flakeSpeed) / rate).toBeLessThan(1.25)
+      expect(flux(rate, snowflakeSizes, snow.speed) / rate).toBeGreaterThan(0.75)
+      expect(flux(rate, snowflakeSizes, snow.speed) / rate).toBeLessThan(1.25)
     }
   })
 
   it('have speeds within 4 % of Gunn and Kinzer', () => {
     for (const [diameter, speed] of gunnKinzer) {
-      expect(Math.abs(dropSpeed(diameter) / speed - 1)).toBeLessThan(0.04)
+      expect(Math.abs(rain.speed(diameter) / speed - 1)).toBeLessThan(0.04)
+    }
+  })
+
+  it('have speeds of flakes that Locatelli and Hobbs measured, by the width of the flake', () => {
+    // Table 1: 0.8 D^0.16 m/s for aggregates of dendrites, D in mm.
+    for (const diameter of [0.5, 1, 2, 4]) {
+      const width = 1000 * flakeWidth(diameter)
+      expect(snow.speed(diameter)).toBeCloseTo(0.8 * width ** 0.16, 4)
     }
   })
 

@@ -32,7 +32,6 @@ const FADE_IN_STEP = 1 / 48
 const _position = new Vector3()
 const _subpoint = new Vector3()
 const _point = new Vector3()
-const _up = new Vector3()
 const _axis = new Vector3()
 const _stretch = new Vector3()
 const _matrix = new Matrix4()
@@ -173,7 +172,7 @@ export class CloudField {
     const { worldMap = null, noise, extinction } = checkOptions(where, options, ...names)
     // Known by its method: importing its class would put that into every bundle.
     if (worldMap !== null && !worldMap?.coverageAt) {
-      fail(where, 'worldMap must be a CloudWorldMap, by cloudWorldMap(), or null', worldMap)
+      fail(where, 'worldMap must be a CloudWorldMap or null', worldMap)
     }
     if (noise !== undefined && !(noise instanceof CloudNoise)) {
       fail(where, 'noise must be a CloudNoise', noise)
@@ -207,12 +206,11 @@ export class CloudField {
     this.radius.value = bottomRadius
     this.night.update(view)
     viewpointMapped(view, _position)
-    _up.copy(view.up)
     _subpoint.copy(view.up).multiplyScalar(bottomRadius)
     for (let i = 0; i < this.layers.length; i++) {
       this.drifts[i].set(0, 0, 0)
       if (elapsed !== 0) this.#drift(i, view.up, elapsed)
-      this.#write(i)
+      this.#write(i, view.up)
     }
     for (let i = this.layers.length; i < CloudLayers.maxLayers; i++) {
       this.values[i * LAYER_STRIDE].set(0, 0, 0, 0)
@@ -232,21 +230,30 @@ export class CloudField {
    * Copies a layer's parameters, and its anchors for the camera and the point of the ground below it: what
    * `layerAt` reads.
    */
-  #write(index: number): void {
+  #write(index: number, up: Vector3): void {
     const { parameters } = this.layers.at(index)
-    const { baseAltitude, topAltitude, density, profileExponent, shapeAmount } = parameters
-    const { weatherWeights, openCells, turbulence } = parameters
+    const { baseAltitude, weatherWeights, openCells } = parameters
     const periods = layerPeriods(parameters)
     const scales = weatherScales(weatherWeights, this.worldMap?.coversPlanet === true, openCells)
     const { stretch, edge, coarseness } = layerForms(parameters)
     const column = meanColumnOf(parameters, this.depthScale.value)
-    const bend = turbulence * billowForm.bend * periods.shape
+    const bend = parameters.turbulence * billowForm.bend * periods.shape
     const lattice = (rotation: Quaternion, period: number, from: Vector3, across = 1): number[][] =>
       latticeRows(this.rotations[index], rotation, period, from, across)
     const { weather, mesoscale, region, shape, detail, fields } = latticeRotations
     const vectors = [
-      [baseAltitude, 1 / (topAltitude - baseAltitude), parameters.coverage * this.fadeIn, density],
-      [profileExponent, shapeAmount, parameters.detailAmount, 1 / periods.shape],
+      [
+        baseAltitude,
+        1 / (parameters.topAltitude - baseAltitude),
+        parameters.coverage * this.fadeIn,
+        parameters.density
+      ],
+      [
+        parameters.profileExponent,
+        parameters.shapeAmount,
+        parameters.detailAmount,
+        1 / periods.shape
+      ],
       scales.clouds,
       ...lattice(shape, periods.shape, _position, 1 / stretch),
       ...lattice(detail, periods.detail, _position, 1 / stretch),
@@ -254,7 +261,7 @@ export class CloudField {
       ...lattice(weather, periods.weather, _subpoint),
       ...lattice(fields, periods.weather * noisePeriods.fields, _subpoint),
       ...lattice(region, noisePeriods.regions, _subpoint),
-      [...windAxis(parameters.wind, _up, _axis).multiplyScalar(parameters.shear), bend],
+      [...windAxis(parameters.wind, up, _axis).multiplyScalar(parameters.shear), bend],
       [scales.cells, scales.regions, scales.planet, scales.cloudVariance],
       [column.columnDensity, column.insideDensity, column.profileMean, parameters.densityGrowth],
       [1 / edge, coarseness, parameters.anvil, parameters.shadow ? 1 : 0],

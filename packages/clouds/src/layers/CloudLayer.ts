@@ -61,7 +61,7 @@ export interface CloudLayerParameters {
   /** Wind that the layer drifts with [m/s]. */
   readonly wind: CloudWind
   /**
-   * Rain, snow or hail from it; seen if `clouds` has a `precipitation`. What is left out stays as it is. Null, the default, for nothing, and
+   * Rain, snow or hail from it; `clouds` must have a `precipitation` then. What is left out stays as it is. Null, the default, for nothing, and
    * for defaults from then on.
    */
   readonly precipitation: CloudPrecipitation | null
@@ -115,14 +115,14 @@ const ranges = {
 function requireParameters(parameters: CloudLayerParameters): void {
   const where = 'CloudLayer'
   checkRanges(where, parameters, ranges)
-  const { baseAltitude, topAltitude, weatherWeights, wind, shadow } = parameters
+  const { baseAltitude, topAltitude, wind } = parameters
   if (topAltitude <= baseAltitude) {
     fail(where, `topAltitude must be above baseAltitude (${baseAltitude} m)`, topAltitude)
   }
-  checkSpectrum(where, 'weatherWeights', weatherWeights, 1)
+  checkSpectrum(where, 'weatherWeights', parameters.weatherWeights, 1)
   checkOptions(`${where}.wind`, wind, 'east', 'north')
   for (const name of ['east', 'north'] as const) checkFinite(where, `wind.${name}`, wind[name])
-  checkBoolean(where, 'shadow', shadow)
+  checkBoolean(where, 'shadow', parameters.shadow)
 }
 
 /**
@@ -197,10 +197,11 @@ function merge(
 ): CloudLayerParameters {
   const merged = withDefaults('CloudLayer', base, changes)
   requireParameters(merged)
-  const [a, b, c, d] = merged.weatherWeights
-  const weatherWeights = Object.freeze([a, b, c, d] as const)
-  const { precipitation: falls } = merged
-  const precipitation = falls && checkedPrecipitation(falls, base.precipitation)
-  const wind = Object.freeze({ ...merged.wind })
-  return Object.freeze({ ...merged, weatherWeights, wind, precipitation })
+  const { precipitation } = merged
+  return Object.freeze({
+    ...merged,
+    weatherWeights: Object.freeze([...merged.weatherWeights] as const),
+    wind: Object.freeze({ ...merged.wind }),
+    precipitation: precipitation && checkedPrecipitation(precipitation, base.precipitation)
+  })
 }

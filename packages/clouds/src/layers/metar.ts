@@ -20,12 +20,13 @@ type Parameters = Partial<CloudLayerParameters>
 const WHERE = 'cloudLayersFromMETAR'
 
 /** Beginning of trends and remarks, where the report proper ends. */
-const LATER = /\s(?:RMK|TEMPO|BECMG|INTER)\b/
+const LATER = /\s(?:RMK|TEMPO|BECMG|INTER|FM\d{4,6}|PROB\d\d)\b/
 
 /** Mark of a report: its time, or one of the words for a sky without clouds. */
 const TELLING = /^(?:\d{6}Z|SKC|CLR|NSC|NCD|CAVOK)$/
 
-const WIND = /^(?:(\d{3})P?(\d{2,3})|VRB\d{2,3}|\/{5})(?:GP?\d{2,3})?(KT|MPS)$/
+const WIND =
+  /^(?:(\d{3})P?(\d{2,3})|(?:VRB|\d{3}|\/{3})P?(?:\d{2,3}|\/\/))(?:G(?:P?\d{2,3}|\/\/))?(KT|MPS)$/
 const CLOUD = /^(FEW|SCT|BKN|OVC|VV|\/{3})([0-5]\d\d|\/{3})(CB|TCU|\/{3})?$/
 
 /** Present weather that falls: intensity, descriptors, kinds. Drifting and blowing snow (DRSN, BLSN) lies already. */
@@ -77,6 +78,9 @@ const TOWERING = 3500
 const STORM_TOP = 11_000
 const STORM_THICKNESS = 6000
 
+/** Thickness of fog whose top one does not see, at most [m]. */
+const DEEPEST_FOG = 900
+
 /** Least thickness of other clouds [m]. */
 const LEAST_THICKNESS = 200
 
@@ -93,7 +97,8 @@ const preset = (name: CloudPresetName, index = 0): CloudLayerParameters =>
 
 /** Fog from the ground on, even, in which one sees a distance up [m]. */
 const fog = (visibility: number): Parameters => ({
-  ...preset('overcast'),
+  ...preset('fog'),
+  topAltitude: DEEPEST_FOG,
   density: VISUAL_DEPTH / Math.max(visibility, HUNDRED_FEET),
   profileExponent: 8,
   densityGrowth: 0,
@@ -156,12 +161,13 @@ function layerOf(
  * above that cirrus. TCU are 3.5 km tall, CB reach 11 km. `VV002` is fog, so thick that one sees 200 ft up.
  *
  * With `precipitation: true`, what falls (`-RA`, `SHRA`, `+TSRA`, `SN`, `DZ`) falls from CB, or else TCU, or else the layer that covers most, at the middle of the rates that
- * its intensity stands for, with hail for `GR` and `GS`; the temperature says how high the freezing level is. Mist and fog (`BR`, `FG`) have no layer but `VV`'s: {@link visibilityFromMETAR} has what is seen through them.
+ * its intensity stands for, with hail for `GR` and `GS`; the temperature says how high the freezing level is. Mist and fog (`BR`, `FG`) have no layer but `VV`'s: {@link visibilityFromMETAR} has what is seen through them. Under `VV` alone what falls has the fog's layer, and no shaft is seen: its rate is for
+ * `rainfall` and `snowfall`. Unknown precipitation (`UP`) is snow in frost, else rain.
  *
- * The wind moves clouds below 2 km. Where it is variable or unknown, and above, they have their preset's.
+ * The wind moves clouds below 2 km. Where it is variable, or its direction or speed unknown (`///05KT`), and above, they have their preset's.
  * An unknown base (`///`) is 3000 ft, an unknown amount SCT; a group of which nothing is known is left out.
  * Without clouds (`SKC`, `CLR`, `NSC`, `NCD`, `CAVOK`), one layer covers nothing. Of more groups than
- * `CloudLayers.maxLayers`, those that cover least are left out, CB and TCU last. Trends (`TEMPO`, `BECMG`) and
+ * `CloudLayers.maxLayers`, those that cover least are left out, CB and TCU last. Trends (`TEMPO`, `BECMG`, `FM`) and
  * remarks (`RMK`) are not read.
  *
  * @param report - The whole report, or its cloud groups.
@@ -219,10 +225,15 @@ function precipitationOf(
   temperature: number | undefined,
   elevation: number
 ): CloudPrecipitation {
-  const isSnow = /SN|SG/.test(kinds) && !kinds.includes('RA')
-  const isDrizzle = /^DZ$/.test(kinds)
-  const each = isSnow ? rates.snow : isDrizzle ? rates.drizzle : rates.rain
-  const rate = each[['-', '', '+'].indexOf(intensity)]
+  const each = kinds.match(/../g)!
+  // What a station cannot tell (UP) is snow in frost, unless it freezes where it falls.
+  const isFrozen = (temperature ?? 1) <= 0 && !text.includes('FZ')
+  const isSnow =
+    each.some(kind => /SN|SG/.test(kind) || (kind === 'UP' && isFrozen)) && !each.includes('RA')
+  const isDrizzle = kinds === 'DZ'
+  const rate = (isSnow ? rates.snow : isDrizzle ? rates.drizzle : rates.rain)[
+    ['-', '', '+'].indexOf(intensity)
+  ]
   const freezing = elevation + (temperature ?? 15) / LAPSE
   const freezingLevel = isSnow
     ? Math.min(freezing, elevation)
@@ -235,11 +246,14 @@ function precipitationOf(
   }
 }
 
+/** Middle of what `0000` stands for, less than 50 m [m]. */
+const LEAST_VISIBILITY = 25
+
 const VISIBILITY = /^(?:CAVOK|(\d{4})(?:NDV)?|([PM]?)(?:(\d+)|(?:(\d+) )?(\d)\/(\d+))SM)$/
 
 /**
- * Prevailing visibility in an aerodrome's report [m]: 10,000 for `9999` and `CAVOK`, null where it is not known. Mist (`BR`) has 1 to 5 km, fog
- * (`FG`) less than 1 km: `heightFog({ density: 3 / visibility })` shows them.
+ * Prevailing visibility in an aerodrome's report [m]: 10,000 for `9999` and `CAVOK`, 25 for `0000`, which is less than 50; null where it is not
+ * known. Mist (`BR`) has 1 to 5 km, fog (`FG`) less than 1 km: `heightFog({ density: 3 / (visibility ?? 10_000) })` shows them.
  *
  * @param report - The whole report.
  * @throws Error when it is no string.
@@ -255,10 +269,8 @@ export function visibilityFromMETAR(report: string): number | null {
     if (!found) continue
     const [all, metres, , miles, whole = 0, part, of] = found
     if (all === 'CAVOK' || metres === '9999') return 10_000
-    if (metres !== undefined) return Number(metres)
-    return (
-      1609.344 * (miles === undefined ? Number(whole) + Number(part) / Number(of) : Number(miles))
-    )
+    const inMiles = miles === undefined ? Number(whole) + Number(part) / Number(of) : Number(miles)
+    return Math.max(metres === undefined ? 1609.344 * inMiles : Number(metres), LEAST_VISIBILITY)
   }
   return null
 }

@@ -17,9 +17,9 @@ const altocumulus: Partial<CloudLayerParameters> = {
   density: 0.02,
   profileExponent: 1.5,
   edgeSoftness: 0.5,
-  densityGrowth: 0.2,
   weatherScale: 0.25,
   shapeScale: 0.5,
+  densityGrowth: 0.2,
   weatherWeights: [0, 1, 0, 0],
   wind: { east: 16, north: -3 }
 }
@@ -27,12 +27,12 @@ const altocumulus: Partial<CloudLayerParameters> = {
 const congestus: Partial<CloudLayerParameters> = {
   baseAltitude: 800,
   topAltitude: 4300,
-  profileExponent: 1,
   coverage: 0.25,
-  weatherScale: 1.2,
-  shapeScale: 0.8,
+  profileExponent: 1,
   shapeAmount: 0.75,
   turbulence: 0.5,
+  weatherScale: 1.2,
+  shapeScale: 0.8,
   wind: { east: 9, north: 3 }
 }
 
@@ -41,9 +41,9 @@ const storm: Partial<CloudLayerParameters> = {
   topAltitude: 11_000,
   coverage: 0.25,
   density: 0.08,
-  anvil: 1,
   turbulence: 0.8,
   shear: 0.2,
+  anvil: 1,
   weatherWeights: [0, 0, 1, 0],
   wind: { east: 12, north: 3 }
 }
@@ -68,6 +68,14 @@ const overcast: Partial<CloudLayerParameters> = {
   edgeSoftness: 0.4,
   weatherWeights: [0, 1, 0, 0],
   wind: { east: 10, north: 5 }
+}
+
+/** Fog from sea level up, through which one sees 150 m. */
+const fog: Partial<CloudLayerParameters> = {
+  ...overcast,
+  baseAltitude: 0,
+  topAltitude: 400,
+  profileExponent: 4
 }
 
 const cirrus: Partial<CloudLayerParameters> = {
@@ -101,6 +109,7 @@ export type CloudPresetName =
   | 'nimbostratus'
   | 'snowShower'
   | 'hailstorm'
+  | 'fog'
 
 const presets: Readonly<Record<CloudPresetName, Layers>> = {
   fairWeather: [cumulus],
@@ -147,7 +156,8 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 }
     }
   ],
-  hailstorm: [{ ...storm, precipitation: { rate: 30, ...hail } }, smallCumulus]
+  hailstorm: [{ ...storm, precipitation: { rate: 30, ...hail } }, smallCumulus],
+  fog: [fog]
 }
 
 /** All names of {@link cloudPreset}, for menus. */
@@ -168,8 +178,9 @@ export const cloudPresetNames = /*#__PURE__*/ Object.keys(presets) as readonly C
  * - `nimbostratus`: a thick closed deck with rain of 3 mm/h
  * - `snowShower`: towering cumulus in cold air, with snow of 1.5 mm/h of water
  * - `hailstorm`: `cumulonimbus` with rain of 30 mm/h, and shafts of hail in its midst
+ * - `fog`: from sea level up to 400 m, through which one sees 150 m; `layers.at(0).set({ baseAltitude, topAltitude })` puts it elsewhere
  *
- * What falls from the last four is seen if `clouds` has a `precipitation`. `cumulonimbus` is dry until its first layer has a rate, and then has hail, too:
+ * Those with rain, snow and hail need `clouds` with a `precipitation`. `cumulonimbus` is dry until its first layer has a rate, and then has hail, too:
  * `layers.at(0).precipitation = { rate: 30 }`.
  *
  * @param count - Least number of layers, to take other presets by `copy` later.

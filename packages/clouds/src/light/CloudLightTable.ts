@@ -2,6 +2,7 @@ import { Data3DTexture, DataUtils, HalfFloatType, LinearFilter, type TypedArray 
 import { texture3D } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import { withDefaults, type ScatteringAngles } from '@welkin/atmosphere'
+import { fail } from '@welkin/geo'
 import { checkRanges } from '../check'
 import { parameterProperties } from '../parameterProperties'
 import { fairWeatherPhase, scalePhase, type CloudPhaseParameters } from './cpu/cloudPhase'
@@ -70,7 +71,7 @@ export class CloudLightTable {
   declare backwardAsymmetry: CloudPhaseParameters['backwardAsymmetry']
   declare forwardShare: CloudPhaseParameters['forwardShare']
   declare scatteringAlbedo: CloudPhaseParameters['scatteringAlbedo']
-  #phase: CloudPhaseParameters
+  #phase: CloudPhaseParameters = fairWeatherPhase
   /** Steps left until the table is that of the phase function. */
   #steps: Generator<void, void, void> | null = null
 
@@ -100,7 +101,6 @@ export class CloudLightTable {
       backwardAsymmetry: number(),
       forwardShare: number()
     }
-    this.#phase = fairWeatherPhase
     this.set(phase)
     this.#apply()
   }
@@ -127,6 +127,9 @@ export class CloudLightTable {
    * @throws Error naming the parameter and its value when one is out of its range.
    */
   set(changes: Partial<CloudPhaseParameters>): this {
+    if ('dropletRadius' in changes) {
+      fail('CloudLightTable', 'dropletRadius needs a DropletLightTable')
+    }
     const phase = Object.freeze(withDefaults('CloudLightTable', this.#phase, changes))
     checkRanges('CloudLightTable', phase, ranges)
     this.#phase = phase
@@ -136,14 +139,14 @@ export class CloudLightTable {
 
   /** Sets the uniforms of the phase function. */
   #apply(): void {
-    const phase = this.#phase
+    const { nodes, phase } = this
     const { depthScale, moments } = scalePhase(phase)
-    this.nodes.depthScale.value = depthScale
-    this.nodes.scatteringScale.value = phase.scatteringAlbedo / depthScale
-    this.nodes.oneMinusAsymmetry.value = 1 - moments[1]
-    this.nodes.secondMoment.value = moments[2]
+    nodes.depthScale.value = depthScale
+    nodes.scatteringScale.value = phase.scatteringAlbedo / depthScale
+    nodes.oneMinusAsymmetry.value = 1 - moments[1]
+    nodes.secondMoment.value = moments[2]
     for (const name of ['forwardAsymmetry', 'backwardAsymmetry', 'forwardShare'] as const) {
-      this.nodes[name].value = phase[name]
+      nodes[name].value = phase[name]
     }
   }
 

@@ -126,7 +126,7 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
     this.#groundShare = share
   }
 
-  /** False: no flash begins, nor is any seen; thunder under way still arrives. */
+  /** False: no flash begins, nor is any seen, and those asked for are forgotten; thunder under way still arrives. */
   get enabled(): boolean {
     return this.#enabled
   }
@@ -135,6 +135,7 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
   set enabled(enabled: boolean) {
     checkBoolean('Lightning', 'enabled', enabled)
     this.#enabled = enabled
+    if (!enabled) this.#asked.length = 0
   }
 
   /**
@@ -183,7 +184,7 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
   }
 
   /**
-   * Asks for a flash, as soon as none is under way and it is known where clouds are: some frames.
+   * Asks for a flash, as soon as none is under way and it is known where clouds are: some frames. Forgotten while `enabled` is false.
    *
    * @throws If an option is unknown or of the wrong kind.
    */
@@ -193,7 +194,7 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
       fail('Lightning.strike', "kind must be 'ground' or 'cloud'", kind)
     }
     if (at !== undefined && !at?.isVector3) fail('Lightning.strike', 'at must be a Vector3', at)
-    this.#asked.push({ kind, at: at?.clone() })
+    if (this.#enabled) this.#asked.push({ kind, at: at?.clone() })
   }
 
   /** Called by the clouds' node, before its picture is drawn. */
@@ -203,7 +204,7 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
     this.#now = now
     viewpointMapped(view, _viewpoint)
     this.#schedule(now)
-    if (this.#enabled) this.#begin(renderer, view, now)
+    this.#begin(renderer, view, now)
     this.#soundThunder(now)
     this.#draw(renderer, view, now, elapsed)
   }
@@ -229,7 +230,7 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
     if (this.#next === null) this.#next = now + wait
     else if (now >= this.#next) {
       this.#next = now + wait
-      if (this.#enabled) this.strike()
+      this.strike()
     }
   }
 

@@ -51,7 +51,7 @@ export interface CloudsOptions {
   extinction?: CloudFieldOptions['extinction']
   /** Light table to share between nodes; left out, the node makes and owns its own. */
   light?: CloudLightTable
-  /** Rain and snow under the clouds, of layers that have `precipitation`: `precipitationShafts()`. Left out, none is seen. */
+  /** Rain and snow under the clouds: `precipitationShafts()`. Needed once a layer has a rate of `precipitation`, then or later. */
   precipitation?: PrecipitationShafts
 }
 
@@ -125,7 +125,9 @@ export class CloudsNode extends AtmosphereNode {
     layers: CloudLayers,
     options: CloudsOptions = {}
   ) {
-    if (!isPerspective(camera)) fail('CloudsNode', 'camera must be a PerspectiveCamera', camera)
+    if (!(camera as PerspectiveCamera | undefined)?.isPerspectiveCamera) {
+      fail('CloudsNode', 'camera must be a PerspectiveCamera', camera)
+    }
     super(atmosphere, camera)
     checkOptions(
       'CloudsNode',
@@ -145,14 +147,14 @@ export class CloudsNode extends AtmosphereNode {
     }
     this.colorNode = colorNode
     this.depthNode = depthNode
-    this.camera = camera
+    this.camera = camera as PerspectiveCamera
     const field = { noise, worldMap, extinction }
     this.field = new CloudField(atmosphere, layers, this.view, field, 'CloudsNode')
     this.set(settings)
     this.light = light ?? new CloudLightTable()
     this.#ownsLight = light === undefined
     this.#precipitation = precipitation
-    checkPrecipitation('CloudsNode', layers, precipitation)
+    checkPrecipitation(layers, precipitation)
     this.#noiseSlices = noise === undefined ? NOISE_SLICES : Infinity
     this.shadows = new CloudShadowMap(this.field, precipitation)
     this.passes = new CloudRenderer({
@@ -271,8 +273,9 @@ export class CloudsNode extends AtmosphereNode {
   }
 
   override updateBefore(frame: NodeFrame): undefined {
-    super.updateBefore(frame)
     const { camera, field, light } = this
+    checkPrecipitation(field.layers, this.#precipitation)
+    super.updateBefore(frame)
     const { renderer } = frame
     if (renderer === null) return
     this.#drawnBy = renderer
@@ -334,10 +337,6 @@ export class CloudsNode extends AtmosphereNode {
   }
 }
 
-function isPerspective(camera: Camera): camera is PerspectiveCamera {
-  return (camera as PerspectiveCamera | undefined)?.isPerspectiveCamera === true
-}
-
 /** Volumetric clouds as a post effect: see {@link CloudsNode}. */
 export const clouds = (
   color: Node,
@@ -345,5 +344,5 @@ export const clouds = (
   camera: Camera,
   atmosphere: Atmosphere,
   layers: CloudLayers,
-  options: CloudsOptions = {}
+  options?: CloudsOptions
 ): CloudsNode => new CloudsNode(color, depth, camera, atmosphere, layers, options)

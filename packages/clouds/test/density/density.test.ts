@@ -320,7 +320,7 @@ describe('layer uniforms', () => {
 })
 
 describe('cloudPreset', () => {
-  it('knows eight skies, each its own', () => {
+  it('knows skies by name, each its own', () => {
     expect(cloudPresetNames).toEqual([
       'fairWeather',
       'congestus',
@@ -333,7 +333,8 @@ describe('cloudPreset', () => {
       'shower',
       'nimbostratus',
       'snowShower',
-      'hailstorm'
+      'hailstorm',
+      'fog'
     ])
     for (const name of cloudPresetNames) {
       cloudPreset(name).at(0).set({ coverage: 0.01 })

@@ -1,3 +1,4 @@
+import { raindrops } from '@welkin/atmosphere'
 import fc from 'fast-check'
 import { describe, expect, it } from 'vitest'
 import {
@@ -156,7 +157,18 @@ describe('cloudLayersFromMETAR', () => {
       north: expect.closeTo(5.144, 3)
     })
     const own = cloudPreset('fairWeather').at(0).wind
-    for (const wind of ['VRB03KT', '/////KT', '']) expect(windOf(wind)).toEqual(own)
+    const unknown = [
+      '/////KT',
+      '///05KT',
+      '240//KT',
+      '///05G15KT',
+      '24010G//KT',
+      'VRB//KT',
+      '///12MPS'
+    ]
+    for (const wind of ['VRB03KT', '', ...unknown.filter(each => each !== '24010G//KT')])
+      expect(windOf(wind)).toEqual(own)
+    expect(windOf('24010G//KT')).toEqual(windOf('24010KT'))
   })
 
   it('has fog in which one sees as far as the report says', () => {
@@ -238,6 +250,40 @@ describe('weather of a METAR', () => {
     expect(rain).toMatchObject({ rate: 20, share: 0.5, hail: 0.3, freezingLevel: 2000 })
   })
 
+  it('tells words of two letters apart', () => {
+    const [hail] = falls('EGLL 221150Z 21010KT 5000 GSGR SCT020CB 13/10 Q0998')
+    expect(hail).toMatchObject({ rate: 5, hail: 0.3, freezingLevel: 2000 })
+  })
+
+  it('is snow in frost where a station cannot tell, unless it freezes on the ground', () => {
+    const snowOf = (weather: string, air: string): number => {
+      const report = `KXYZ 221156Z AUTO 24008KT 5SM ${weather} OVC010 ${air} A2990`
+      return snowShareOf(0, falls(report)[0]!.freezingLevel!)
+    }
+    expect(snowOf('UP', 'M05/M06')).toBe(1)
+    expect(snowOf('UP', '05/04')).toBe(0)
+    expect(snowOf('UP', '/////')).toBe(0)
+    expect(snowOf('FZUP', 'M05/M06')).toBe(0)
+    expect(snowOf('RAUP', 'M05/M06')).toBe(0)
+  })
+
+  it('is of the present: not of what a trend expects', () => {
+    const report = 'YSSY 221200Z 24008KT 9999 FEW030 18/10 Q1015'
+    for (const trend of ['FM1300 18015KT 3000 RA BKN010', 'FM221300 RA OVC010', 'PROB30 TSRA'])
+      expect(read(`${report} ${trend}`, { precipitation: true })).toEqual(
+        read(report, { precipitation: true })
+      )
+  })
+
+  it('has rates that drops of rain take', () => {
+    for (const weather of ['-DZ', 'DZ', '+DZ', '-RA', '+TSRA']) {
+      const { rate } = falls(`EGLL 221150Z 21010KT 5000 ${weather} OVC010 13/10 Q0998`)[0]!
+      const drops = raindrops({ rate })
+      expect(drops.extinction).toBeCloseTo((0.33 * rate ** 0.64) / 1000, 12)
+      drops.dispose()
+    }
+  })
+
   it('falls no more where the wind raises what lies, or where it fell before', () => {
     const fallsFrom = (weather: string) =>
       falls(`ENGM 221150Z 01025KT 0800 ${weather} OVC010 M05/M07 Q1001`)[0]?.rate
@@ -287,6 +333,9 @@ describe('weather of a METAR', () => {
     ['KSFO 221156Z 28014G22KT 10SM FEW008 14/10 A2997', 16_093],
     ['KSFO 221156Z 28014G22KT 1 1/2SM BR FEW008 14/10 A2997', 2414],
     ['KSFO 221156Z 28014G22KT M1/4SM FG VV001 14/14 A2997', 402],
+    // Less than 50 m, and less than what a mile's fractions can say: never 0, by which users divide.
+    ['EGLL 221150Z 00000KT 0000 FG VV/// 02/02 Q1030', 25],
+    ['KDEN 221150Z 00000KT 0SM FG VV000 M02/M02 A3010', 25],
     ['EGPC 221150Z AUTO /////KT //// // ////// 10/04 Q1015', null]
   ] as const)('sees as far as %s says', ([report, metres]) => {
     const seen = visibilityFromMETAR(report)

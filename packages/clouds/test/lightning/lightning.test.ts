@@ -1,12 +1,13 @@
-import { Atmosphere } from '@welkin/atmosphere'
+import { Atmosphere, type AtmosphereView } from '@welkin/atmosphere'
 import fc from 'fast-check'
-import { PerspectiveCamera, PointLight, Vector3 } from 'three'
+import { Matrix3, PerspectiveCamera, PointLight, Vector3 } from 'three'
 import { float, vec4 } from 'three/tsl'
-import { describe, expect, it, test } from 'vitest'
+import { describe, expect, it, test, vi } from 'vitest'
 import { cloudPreset, clouds, lightning } from '../../src'
 import { crookedLine, lightningChannel, STEM_POINTS, type Point } from '../../src/lightning/channel'
 import { emittedUntil, flashCurve, lightBetween } from '../../src/lightning/flashCurve'
 import { FlashLimit } from '../../src/lightning/FlashLimit'
+import { LightningPasses } from '../../src/lightning/LightningPasses'
 import { meanInverseSquareOf } from '../twins/lightning'
 
 /** Numbers of a linear congruential generator. */
@@ -207,6 +208,52 @@ describe('lightning', () => {
     expect(() => lightning(made).strike({ at: 1 } as never)).toThrow(
       'Lightning.strike: at must be a Vector3'
     )
+  })
+
+  test('forgets what it was asked for while it is off: no flash comes when it is switched on', () => {
+    const made = node()
+    vi.spyOn(made.field, 'isReady', 'get').mockReturnValue(true)
+    const begin = vi.spyOn(LightningPasses.prototype, 'begin').mockReturnValue()
+    const render = vi.spyOn(LightningPasses.prototype, 'render').mockReturnValue()
+    const { atmosphere, camera } = made
+    const up = new Vector3(0, 0, 1)
+    const view = {
+      atmosphere,
+      camera,
+      up,
+      height: 0,
+      viewToMapped: new Matrix3()
+    } as unknown as AtmosphereView
+    const storm = lightning(made)
+    let [flashes, time] = [0, 0]
+    storm.addEventListener('strike', () => flashes++)
+    /** Frames of a second. */
+    const wait = (seconds: number): void => {
+      for (let i = 0; i < seconds; i++) {
+        storm.time = ++time
+        storm.prepare({} as never, view, { time } as never)
+      }
+    }
+    const at = new Vector3(0, 100, -3000)
+    storm.enabled = false
+    for (let i = 0; i < 5; i++) storm.strike({ at })
+    wait(5)
+    storm.enabled = true
+    wait(20)
+    expect([flashes, storm.isFlashing]).toEqual([0, false])
+    // What was asked for before, and has not begun, is forgotten as well.
+    for (let i = 0; i < 5; i++) storm.strike({ at })
+    storm.enabled = false
+    wait(5)
+    storm.enabled = true
+    wait(20)
+    expect(flashes).toBe(0)
+    for (let i = 0; i < 2; i++) storm.strike({ at })
+    wait(20)
+    expect(flashes).toBe(2)
+    begin.mockRestore()
+    render.mockRestore()
+    storm.dispose()
   })
 
   test('is part of the clouds until it is disposed', () => {

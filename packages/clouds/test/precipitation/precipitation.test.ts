@@ -45,15 +45,29 @@ describe('precipitation of a layer', () => {
     clouds(...bare, dry).dispose()
     dry.at(0).precipitation = { rate: 30 }
     expect(dry.at(0).parameters).toEqual(storm.parameters)
-    expect(() => clouds(...bare, dry)).toThrow('precipitation must be given')
+    expect(() => clouds(...bare, dry)).toThrow('precipitation must be precipitationShafts')
     expect(() => precipitationShafts({ drops: {} as never })).toThrow(
       'PrecipitationShafts: drops must be a ScatteringPhase or null'
     )
     const [color, depth] = [vec4(0), float(0)]
     expect(() =>
       clouds(color, depth, new PerspectiveCamera(), new Atmosphere(), cloudPreset('shower'))
-    ).toThrow('CloudsNode: precipitation must be given: layers have some')
+    ).toThrow('CloudsNode: precipitation must be precipitationShafts(): it rains')
     expect(() => precipitationShafts({ rain: 1 } as never)).toThrow("unknown option 'rain'")
+  })
+
+  test('is asked for as soon as a layer begins to rain, too, and not before', () => {
+    const layers = cloudPreset('fairWeather', 2)
+    const bare = [vec4(0), float(0), new PerspectiveCamera(), new Atmosphere()] as const
+    const node = clouds(...bare, layers)
+    const shown = clouds(...bare, layers, { precipitation: precipitationShafts() })
+    const draw = (each: typeof node) => () => each.updateBefore({ renderer: null } as never)
+    expect(draw(node)).not.toThrow()
+    layers.copy(cloudPreset('shower'))
+    expect(draw(node)).toThrow('CloudsNode: precipitation must be precipitationShafts(): it rains')
+    expect(draw(shown)).not.toThrow()
+    layers.copy(cloudPreset('cumulonimbus'))
+    expect(draw(node)).not.toThrow()
   })
 })
 
