@@ -269,9 +269,9 @@ export class LostLightGrid {
    * @param behind - Path up to what is behind it; 0 where that is not seen.
    */
   pathThrough(front: Float, behind: Float, transmittance: Float): Float {
-    const [before, after] = [front, behind].map(path => vec2(path, 1).div(path.add(1)) as Vec2)
-    const { x: seen, y: beyond } = mix(before, after, transmittance).toConst() as unknown as Vec2
-    return seen.div(beyond)
+    const before = behind.add(1).mul(transmittance.oneMinus()).toConst() as Float
+    const after = front.add(1).mul(transmittance).toConst() as Float
+    return front.mul(before).add(behind.mul(after)).div(before.add(after))
   }
 
   /**
@@ -298,7 +298,8 @@ export class LostLightGrid {
       tolerance ? depth.sub(own).clamp(tolerance.negate(), tolerance).toConst() : float(0)
     if (tolerance) {
       If(tolerance.greaterThan(0), () => {
-        part.assign(shownAt(own.add(moved(mean.w)) as Float))
+        // The tangent: it moves little.
+        part.addAssign(part.mul(part.oneMinus()).mul(moved(mean.w).mul(Math.LN2)))
       })
     }
     const lost = mean.rgb.mul(part.div(LIGHT_SCALE)).toVar() as Vec3

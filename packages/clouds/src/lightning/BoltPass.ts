@@ -96,6 +96,8 @@ export class BoltPass {
   readonly #projection = matrix4()
   /** Part of the picture that is drawn: its corner, and its size, over the picture's; y down. */
   readonly #crop = vector4()
+  /** Scale and offset from the picture to the crop. */
+  readonly #toCrop = vector4()
   #channel: PlacedChannel | null = null
   /** Luminous intensity of a metre of the stem, and that of branches, times `luminanceScale` [cd/m]. */
   readonly #stemLight = number()
@@ -227,7 +229,7 @@ export class BoltPass {
 
   /** Light of the channel [luminance × `luminanceScale`]. To be called inside of a shader function. @param at - In the picture, y down. */
   sample(at: Vec2): Vec3 {
-    const drawn = at.sub(this.#crop.xy).div(this.#crop.zw).toConst() as Vec2
+    const drawn = at.mul(this.#toCrop.xy).add(this.#toCrop.zw).toConst() as Vec2
     const light = vec3(0).toVar() as Variable<Vec3>
     If(drawn.clamp(0, 1).equal(drawn).all(), () => {
       light.assign(this.#texture.sample(drawn).level(0).rgb)
@@ -260,7 +262,10 @@ export class BoltPass {
     const perLength = 1 / (4 * Math.PI * brightLength)
     this.#stemLight.value = power.all * perLength
     this.#branchLight.value = power.branches * perLength
-    if (!this.#cropTo(frame.size.value)) return
+    const isSeen = this.#cropTo(frame.size.value)
+    const { x: left, y: top, z: across, w: down } = this.#crop.value
+    this.#toCrop.value.set(1 / across, 1 / down, -left / across, -top / down)
+    if (!isSeen) return
     const state = RendererUtils.resetRendererState(renderer, {} as never)
     renderer.setRenderTarget(this.#target)
     renderer.setClearColor(0x000000, 0)

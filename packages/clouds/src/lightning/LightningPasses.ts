@@ -20,7 +20,7 @@ import {
   type Vec3,
   type Vec4
 } from '../tsl-types'
-import { number } from '../uniforms'
+import { number, vector4 } from '../uniforms'
 import { BoltPass } from './BoltPass'
 import { CHANNEL_COLOR, STEM_POINTS, type PlacedChannel, type StormColumn } from './channel'
 import { StormDensity } from './StormDensity'
@@ -79,6 +79,8 @@ export class LightningPasses {
   /** Luminous power, times `luminanceScale` [lm]. */
   readonly power = number()
   readonly #clouds: CloudsNode
+  /** Scale and offset from places in the picture to those among marched pixels: quotients of uniforms cost each pixel a division. */
+  readonly #toMarched = vector4()
   /** Points of the stem from the camera, in the mapped space [m], and scattering by air there [1/m]. */
   readonly #stem: readonly Vector4[] = Array.from({ length: STEM_POINTS }, () => new Vector4())
   readonly #stemArray = vec4Array(this.#stem as Vector4[])
@@ -243,13 +245,18 @@ export class LightningPasses {
     const here = uv() as unknown as Vec2
     const result = color.toVar() as Variable<Vec3>
     If(this.power.greaterThan(0), () => {
-      // Where the marched pixels of this frame lie in their blocks.
-      const { size, block, jitter, marchedSize } = this.#clouds.passes.viewRays.frame
-      const marched = here.mul(size).sub(jitter.add(0.5)).div(block).add(0.5).div(marchedSize)
-      const glow = this.#smooth.sample(marched).level(0).toConst() as Vec4
+      const glow = this.#smooth
+        .sample(here.mul(this.#toMarched.xy).add(this.#toMarched.zw))
+        .level(0)
+        .toConst() as Vec4
       const air = vec3(...CHANNEL_COLOR).mul(glow.w)
       const light = glow.xyz.mul(transmittance.oneMinus()).add(air)
-      result.addAssign(light.mul(this.power.div(STORED_POWER)).add(this.#bolt.sample(here)))
+      result.addAssign(
+        light
+          .mul(this.power)
+          .mul(1 / STORED_POWER)
+          .add(this.#bolt.sample(here))
+      )
     })
     return result
   }
@@ -275,8 +282,15 @@ export class LightningPasses {
     })
     this.#density.update(_offset)
     this.power.value = power.all
-    const { passes } = this.#clouds
-    const marched = passes.viewRays.frame.marchedSize.value
+    const { frame } = this.#clouds.passes.viewRays
+    const marched = frame.marchedSize.value
+    // Where the marched pixels of this frame lie in their blocks.
+    const { size, block, jitter } = frame
+    const [across, down] = (['x', 'y'] as const).map(axis => ({
+      scale: size.value[axis] / (block.value * marched[axis]),
+      offset: (0.5 - (jitter.value[axis] + 0.5) / block.value) / marched[axis]
+    }))
+    this.#toMarched.value.set(across.scale, down.scale, across.offset, down.offset)
     const [x, y] = [marched.x, marched.y].map(size => Math.floor(size / GLOW_PIXEL) + 1)
     this.#target.setSize(x, y)
     this.#smoothTarget.setSize(x, y)

@@ -165,10 +165,7 @@ export class CloudRenderer {
     this.#precipitation = precipitation
     const ofClouds = texturesOf(this.#shadedTarget)
     this.#fall = precipitation?.passOf(scene, this.seen, this.#cast, ofClouds)
-    this.#shade = new FragmentPass(
-      'Welkin.CloudsShade',
-      shadePixels(scene, this.seen, this.#cast)
-    )
+    this.#shade = new FragmentPass('Welkin.CloudsShade', shadePixels(scene, this.seen, this.#cast))
     for (const { material } of [this.#march, this.#shade]) {
       const key = material.customProgramCacheKey.bind(material)
       material.customProgramCacheKey = () => key() + kindsOf(field) + this.#cast.version

@@ -37,14 +37,14 @@ const LEAST_WEIGHT = 1e-3
 
 /**
  * Precipitation on the rays of a frame, with its light: two passes after the light of the clouds, which knows nothing of it. It is softer than clouds
- * are, and takes many steps: four marched pixels share a ray, which goes through each of them in turn, and pixels take what lies between the
+ * are, and takes many steps: four marched pixels share a ray between them, others in each round, and pixels take what lies between the
  * four rays around them, before and behind their clouds. What falls is kept with its stretch of the ray, so that clouds and ground hide it at
  * their own edges.
  */
 export class FallPass {
   readonly #frame: FrameInputs['frame']
-  readonly #target = fallTarget('Fall')
-  readonly #spreadTarget = fallTarget('FallSpread')
+  readonly #target = tableTarget('Welkin.CloudsFall', 1, 1, 2, NearestFilter)
+  readonly #spreadTarget = tableTarget('Welkin.CloudsFallSpread', 1, 1, 2)
   readonly #passes: readonly FragmentPass[]
   /** False until the passes were drawn, even if nothing falls: rain begins without a stutter. */
   #isCompiled = false
@@ -103,8 +103,11 @@ export class FallPass {
   }
 }
 
-const fallTarget = (name: string): RenderTarget =>
-  tableTarget(`Welkin.Clouds${name}`, 1, 1, 2, NearestFilter)
+/**
+ * Middle of the pixels that share a ray, from the first of them: the ray goes there, as far from each. Through one of them: their grain
+ * differs, and shows as a screen door (*Rain and snow*).
+ */
+const middleOf = (fallBlock: Float): Float => fallBlock.sub(1).mul(0.5)
 
 const nodesOf = ({ textures }: RenderTarget): LevelTexture<Vec2>[] =>
   textures.map(each => texture(each) as unknown as LevelTexture<Vec2>)
@@ -128,7 +131,7 @@ function draw(
     const texel = uv().mul(marchedSize.div(fallBlock).ceil()).floor().toConst() as unknown as Vec2
     const own = texel.mul(fallBlock).add(fallPixel).min(marchedSize.sub(1)).toConst() as Vec2
     const here = own.add(0.5).div(marchedSize).toConst() as Vec2
-    const pixel = own.mul(block).add(jitter).min(size.sub(1))
+    const pixel = own.add(middleOf(fallBlock)).mul(block).add(jitter).min(size.sub(1))
     const { direction, directionView } = viewRayAt(
       scene.viewRays,
       pixel.add(0.5).div(size).toConst()
@@ -159,7 +162,8 @@ function spread(
   return outputs<[Vec4, Vec4]>(2, ([color, seen]) => {
     const here = uv() as unknown as Vec2
     const size = marchedSize.div(fallBlock).ceil().toConst() as Vec2
-    const place = here.mul(marchedSize).floor().sub(fallPixel).div(fallBlock).toConst() as Vec2
+    const pixel = here.mul(marchedSize).floor().sub(fallPixel).sub(middleOf(fallBlock))
+    const place = pixel.div(fallBlock).toConst() as Vec2
     const first = place.floor().toConst() as Vec2
     const part = place.sub(first).toConst() as Vec2
     const { ray } = cast.rayAt(here)

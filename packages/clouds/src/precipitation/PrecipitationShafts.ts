@@ -160,12 +160,7 @@ export class PrecipitationShafts {
   }
 
   /** The pass that draws it, for the clouds of a node. */
-  passOf(
-    scene: FallScene,
-    marched: MarchedTargets,
-    cast: LitRays,
-    shaded: CloudTargets
-  ): FallPass {
+  passOf(scene: FallScene, marched: MarchedTargets, cast: LitRays, shaded: CloudTargets): FallPass {
     return new FallPass(scene, this, marched, cast, shaded)
   }
 
