@@ -51,7 +51,7 @@ export interface ShaftCost {
   quality: LightShaftsQuality
   withoutMs: number
   shaftsMs: number
-  /** What passes take more, in the order in which they are drawn; those of a name are numbered [ms]. */
+  /** Passes by name and number, and what each takes more, in the order in which they are drawn [ms]. */
   passes: [name: string, ms: number][]
 }
 

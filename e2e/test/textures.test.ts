@@ -282,7 +282,8 @@ it('features of the clouds sample as many textures as their README says', async 
     const options = { light, precipitation, worldMap: cloudWorldMap(picture()) }
     return clouds(air, depth, camera, atmosphere, cloudPreset('shower'), options)
   }, 'Welkin.CloudsShade')
-  expect(rainy).toBe(15)
+  // What falls is laid over that light by passes of its own.
+  expect(rainy).toBe(13)
   // Bows cost nothing where nothing falls: their table is read in the pass of what falls, once a ray that meets any.
   const [smooth, bowed] = await Promise.all(
     [undefined, raindrops()].map(drops =>
@@ -362,6 +363,22 @@ it('a bow costs nothing where none is: it is looked up once, on rays that have m
   // Not in the march's loop, and behind the condition that something was met.
   const added = phase.filter(read => /^if \( \( \w+\.x > 0\.0001 \) \) \{ \w+$/.test(read))
   expect(added).toHaveLength(1)
+})
+
+it('shafts before clouds find the ray of a pixel where the shader begins, as the air does: once for both', async () => {
+  const [{ source }] = await pipelinesOf('RenderPipeline', renderer => {
+    const world = new World()
+    const { atmosphere, camera, sun } = world
+    sun.castShadow = true
+    const pipeline = new RenderPipeline(renderer)
+    const node = world.clouds()
+    lightShafts(atmosphere, camera, sun).add(cloudAirShadow(node))
+    pipeline.outputNode = node
+    return () => pipeline.render()
+  })
+  const reads = readsOf(source)
+  const [depth] = reads
+  expect(reads.filter(read => read.split(' ').at(-1) === depth)).toEqual([depth, depth])
 })
 
 it('a shader that samples too many textures throws in drawing, and says what samples them', async () => {

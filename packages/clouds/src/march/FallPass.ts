@@ -166,32 +166,32 @@ function spread(
     const place = pixel.div(fallBlock).toConst() as Vec2
     const first = place.floor().toConst() as Vec2
     const part = place.sub(first).toConst() as Vec2
-    const { ray } = cast.rayAt(here)
-    const { shares } = cast.pointsAt(here)
-    const distances = marched.distances.sample(here).level(0).toConst() as Vec4
-    const end = endOf(ray, distances)
     const corners = CORNERS.map(([x, y]) => {
       const index = first.add(vec2(x, y)).clamp(vec2(0), size.sub(1))
       const at = index.add(0.5).div(size).toConst() as Vec2
       const own = fallen[1].sample(at).level(0).toConst() as Vec4
       const between = (x ? part.x : part.x.oneMinus()).mul(y ? part.y : part.y.oneMinus())
-      const fits = own.w
-        .sub(end)
-        .smoothstep(...SAME_END)
-        .add(LEAST_WEIGHT)
-      return { at, own, weight: between.mul(fits).toConst() }
+      return { at, own, between }
     })
-    const weights = corners.reduce<Float>((sum, { weight }) => sum.add(weight), float(0))
     const most = corners.reduce<Float>((sum, { own }) => sum.max(own.x), float(0))
     const ofClouds = shaded.light.sample(here).level(0).toConst() as Vec4
     const known = shaded.distances.sample(here).level(0).toConst() as Vec4
     color.assign(ofClouds)
     seen.assign(known)
     If(most.greaterThan(0), () => {
+      const { ray } = cast.rayAt(here)
+      const { shares } = cast.pointsAt(here)
+      const distances = marched.distances.sample(here).level(0).toConst() as Vec4
+      const end = endOf(ray, distances)
+      const weighted = corners.map(({ at, own, between }) => {
+        const fits = own.w.sub(end).smoothstep(...SAME_END)
+        return { at, own, weight: between.mul(fits.add(LEAST_WEIGHT)).toConst() as Float }
+      })
+      const weights = weighted.reduce<Float>((sum, { weight }) => sum.add(weight), float(0))
       /** Sums of opacity, and by that of its stretch. */
       const sums = vec3(0).toVar() as Variable<Vec3>
       const light = vec4(0).toVar() as Variable<Vec4>
-      for (const { at, own, weight } of corners) {
+      for (const { at, own, weight } of weighted) {
         sums.addAssign(vec3(1, own.yz).mul(own.x.mul(weight)))
         light.addAssign(fallen[0].sample(at).level(0).mul(weight))
       }
