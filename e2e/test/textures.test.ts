@@ -365,22 +365,6 @@ it('a bow costs nothing where none is: it is looked up once, on rays that have m
   expect(added).toHaveLength(1)
 })
 
-it('shafts before clouds find the ray of a pixel where the shader begins, as the air does: once for both', async () => {
-  const [{ source }] = await pipelinesOf('RenderPipeline', renderer => {
-    const world = new World()
-    const { atmosphere, camera, sun } = world
-    sun.castShadow = true
-    const pipeline = new RenderPipeline(renderer)
-    const node = world.clouds()
-    lightShafts(atmosphere, camera, sun).add(cloudAirShadow(node))
-    pipeline.outputNode = node
-    return () => pipeline.render()
-  })
-  const reads = readsOf(source)
-  const [depth] = reads
-  expect(reads.filter(read => read.split(' ').at(-1) === depth)).toEqual([depth, depth])
-})
-
 it('a shader that samples too many textures throws in drawing, and says what samples them', async () => {
   const [surface, water, nightLights] = [picture(), picture(), picture()]
   const comet = (): SkyLayer => planetGround({ surface: picture() })

@@ -58,8 +58,6 @@ export class ScreenShafts implements ScreenShadows {
   readonly #strength = number()
   /** 1 if what is behind the foreground has shafts already. */
   readonly #isForward = number()
-  /** End of the pixel's ray, by {@link begin}. */
-  #begun: RayEnd | undefined
   /** Output per lost light of which the grid keeps parts: half floats hold the moon's, too. */
   readonly #gain = number(1)
 
@@ -154,18 +152,12 @@ export class ScreenShafts implements ScreenShadows {
     return this.foreground === undefined && screens.hasForeground && !(this.isMesh && isForward)
   }
 
-  begin(renderer: Renderer): void {
-    this.#begun = this.#endIn(renderer, this.#place)
-  }
-
   dim(color: Vec3, transmittance?: Float): Vec3 {
-    const begun = this.#begun
-    this.#begun = undefined
     const left = color.toVar()
     if (this.#isDrawnByForeground) return left
     If(this.#strength.greaterThan(0), () => {
       const lost = Fn(({ renderer }): Vec3 =>
-        this.#lostUpTo(begun ?? this.#endIn(renderer, this.#place), transmittance)
+        this.#lostUpTo(this.#endIn(renderer, this.#place), transmittance)
       )()
       // Clouds may also give light.
       left.subAssign(lost.min(left))

@@ -33,10 +33,6 @@ export interface ScreenShadows extends SkyLayer {
    */
   prepareShadows(renderer: Renderer, view: AtmosphereView, frame?: NodeFrame): void
   /**
-   * Finds what {@link dim} reads of the pixel where the shader begins, in which a picture is drawn that finds the same: compilers take both for one.
-   */
-  begin?(renderer: Renderer): void
-  /**
    * Takes what shadows take from a colour, linear sRGB × `luminanceScale`.
    *
    * @param transmittance - That of the foreground, where it is known.

@@ -3,7 +3,7 @@ import type { Atmosphere, ScreenShadows, ShadowedShafts } from '@welkin/atmosphe
 import { checkBoolean, checkNonNegative, checkOptions, fail, setOptions } from '@welkin/geo'
 import type { Camera, PerspectiveCamera } from 'three'
 import { Fn, uniform, uv, vec4 } from 'three/tsl'
-import type { Node, NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
+import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { checkDepth, checkPrecipitation } from '../check'
 import { CloudField, type CloudFieldOptions } from '../density/CloudField'
 import type { CloudWorldMap } from '../density/CloudWorldMap'
@@ -108,7 +108,7 @@ export class CloudsNode extends AtmosphereNode {
   /** Layers of the picture with the clouds, drawn by this node: shadows in the air of `cloudAirShadow`, and `lightning`. */
   readonly screens = new Set<
     Pick<ScreenShadows, 'prepare' | 'update' | 'dim'> &
-      Partial<Pick<ScreenShadows, 'prepareShadows' | 'begin'>>
+      Partial<Pick<ScreenShadows, 'prepareShadows'>>
   >()
   /** Light shafts that have these clouds' shadows, by `cloudAirShadow`. */
   readonly castsInto = new Set<ShadowedShafts>()
@@ -310,9 +310,8 @@ export class CloudsNode extends AtmosphereNode {
     return 8 * super.customCacheKey() + this.screens.size
   }
 
-  override setup({ renderer }: NodeBuilder): Node {
+  override setup(): Node {
     return Fn(() => {
-      for (const screen of this.screens) screen.begin?.(renderer)
       const clouds = this.passes.accumulated.light.sample(uv()).level(0).toConst()
       const color = vec4(whereSeen(this.colorNode, clouds.a.greaterThan(0)) as Vec4).toConst()
       const light = clouds.rgb.mul(this.#exposure)

@@ -104,8 +104,8 @@ export class FallPass {
 }
 
 /**
- * Middle of the pixels that share a ray, from the first of them: the ray goes there, as far from each. Through one of them: their grain
- * differs, and shows as a screen door (*Rain and snow*).
+ * Middle of the pixels that share a ray, from the first of them: the ray goes there, as far from each. Through one of them: grain of that one
+ * is stronger, and a screen door easier to see (*Rain and snow*).
  */
 const middleOf = (fallBlock: Float): Float => fallBlock.sub(1).mul(0.5)
 
