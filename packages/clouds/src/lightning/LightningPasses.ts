@@ -9,6 +9,7 @@ import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/ts
 import type { Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
 import { marchedPixel } from '../march/tsl/marchedPixel'
+import { CORNERS } from '../temporal/tsl/cells'
 import { viewRayAt } from '../march/tsl/viewRay'
 import {
   loop,
@@ -20,7 +21,7 @@ import {
   type Vec3,
   type Vec4
 } from '../tsl-types'
-import { number, vector4 } from '../uniforms'
+import { number, vector2 } from '../uniforms'
 import { BoltPass } from './BoltPass'
 import { CHANNEL_COLOR, STEM_POINTS, type PlacedChannel, type StormColumn } from './channel'
 import { StormDensity } from './StormDensity'
@@ -80,7 +81,8 @@ export class LightningPasses {
   readonly power = number()
   readonly #clouds: CloudsNode
   /** Scale and offset from places in the picture to those among marched pixels: quotients of uniforms cost each pixel a division. */
-  readonly #toMarched = vector4()
+  readonly #scale = vector2()
+  readonly #offset = vector2()
   /** Points of the stem from the camera, in the mapped space [m], and scattering by air there [1/m]. */
   readonly #stem: readonly Vector4[] = Array.from({ length: STEM_POINTS }, () => new Vector4())
   readonly #stemArray = vec4Array(this.#stem as Vector4[])
@@ -193,17 +195,14 @@ export class LightningPasses {
   #smoothed(): Vec4 {
     return Fn(() => {
       const here = uv() as unknown as Vec2
-      const texel = vec2(0.5 * GLOW_PIXEL)
+      const texel = vec2(GLOW_PIXEL)
         .div(this.#clouds.passes.viewRays.frame.marchedSize)
         .toConst() as Vec2
       const glow = vec4(0).toVar() as Variable<Vec4>
-      for (const [x, y] of [
-        [-1, -1],
-        [1, -1],
-        [-1, 1],
-        [1, 1]
-      ])
-        glow.addAssign(this.#glow.sample(here.add(texel.mul(vec2(x, y)))).level(0))
+      for (const [x, y] of CORNERS) {
+        const place = here.add(texel.mul(vec2(x - 0.5, y - 0.5)))
+        glow.addAssign(this.#glow.sample(place).level(0))
+      }
       // Green lies between red and blue as λ⁻⁴ does: their mean by geometry.
       const green = glow.x.pow(1 - GREEN_SHARE).mul(glow.y.pow(GREEN_SHARE))
       const cloud = vec3(glow.x, green, glow.y).div(glow.z.max(1e-3))
@@ -245,10 +244,8 @@ export class LightningPasses {
     const here = uv() as unknown as Vec2
     const result = color.toVar() as Variable<Vec3>
     If(this.power.greaterThan(0), () => {
-      const glow = this.#smooth
-        .sample(here.mul(this.#toMarched.xy).add(this.#toMarched.zw))
-        .level(0)
-        .toConst() as Vec4
+      const marched = here.mul(this.#scale).add(this.#offset)
+      const glow = this.#smooth.sample(marched).level(0).toConst() as Vec4
       const air = vec3(...CHANNEL_COLOR).mul(glow.w)
       const light = glow.xyz.mul(transmittance.oneMinus()).add(air)
       result.addAssign(
@@ -282,15 +279,17 @@ export class LightningPasses {
     })
     this.#density.update(_offset)
     this.power.value = power.all
-    const { frame } = this.#clouds.passes.viewRays
-    const marched = frame.marchedSize.value
+    const { size, marchedSize, block, jitter } = this.#clouds.passes.viewRays.frame
+    const marched = marchedSize.value
+    const edge = block.value
+    this.#scale.value.copy(size.value).divide(marched).divideScalar(edge)
     // Where the marched pixels of this frame lie in their blocks.
-    const { size, block, jitter } = frame
-    const [across, down] = (['x', 'y'] as const).map(axis => ({
-      scale: size.value[axis] / (block.value * marched[axis]),
-      offset: (0.5 - (jitter.value[axis] + 0.5) / block.value) / marched[axis]
-    }))
-    this.#toMarched.value.set(across.scale, down.scale, across.offset, down.offset)
+    const { value: offset } = this.#offset
+    offset
+      .setScalar((edge - 1) / 2)
+      .sub(jitter.value)
+      .divide(marched)
+      .divideScalar(edge)
     const [x, y] = [marched.x, marched.y].map(size => Math.floor(size / GLOW_PIXEL) + 1)
     this.#target.setSize(x, y)
     this.#smoothTarget.setSize(x, y)
