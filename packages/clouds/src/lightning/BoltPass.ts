@@ -194,7 +194,7 @@ export class BoltPass {
       // In front of the camera and not in clouds, or else nowhere.
       const isSeen = a.w.min(b.w).greaterThan(0).and(passing.x.max(passing.y).greaterThan(0))
       const inPicture = pixel.div(frame.size).mul(vec2(1, -1)).add(0.5)
-      const drawn = this.#cropped(inPicture).sub(0.5)
+      const drawn = inPicture.mul(this.#crop.xy).add(this.#crop.zw).sub(0.5)
       return isSeen.select(vec4(drawn.mul(vec2(2, -2)), 0.5, 1), vec4(2, 2, 2, 1))
     })()
     material.fragmentNode = Fn(() => {
@@ -225,13 +225,9 @@ export class BoltPass {
     return material
   }
 
-  #cropped(at: Vec2): Vec2 {
-    return at.mul(this.#crop.xy).add(this.#crop.zw)
-  }
-
   /** Light of the channel [luminance × `luminanceScale`]. To be called inside of a shader function. @param at - In the picture, y down. */
   sample(at: Vec2): Vec3 {
-    const drawn = this.#cropped(at).toConst() as Vec2
+    const drawn = at.mul(this.#crop.xy).add(this.#crop.zw).toConst() as Vec2
     const light = vec3(0).toVar() as Variable<Vec3>
     If(drawn.clamp(0, 1).equal(drawn).all(), () => {
       light.assign(this.#texture.sample(drawn).level(0).rgb)

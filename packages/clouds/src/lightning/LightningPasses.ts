@@ -246,14 +246,8 @@ export class LightningPasses {
     If(this.power.greaterThan(0), () => {
       const marched = here.mul(this.#scale).add(this.#offset)
       const glow = this.#smooth.sample(marched).level(0).toConst() as Vec4
-      const air = vec3(...CHANNEL_COLOR).mul(glow.w)
-      const light = glow.xyz.mul(transmittance.oneMinus()).add(air)
-      result.addAssign(
-        light
-          .mul(this.power)
-          .mul(1 / STORED_POWER)
-          .add(this.#bolt.sample(here))
-      )
+      const light = glow.xyz.mul(transmittance.oneMinus()).add(vec3(...CHANNEL_COLOR).mul(glow.w))
+      result.addAssign(light.mul(this.power.div(STORED_POWER)).add(this.#bolt.sample(here)))
     })
     return result
   }
@@ -282,17 +276,15 @@ export class LightningPasses {
     const { size, marchedSize, block, jitter } = this.#clouds.passes.viewRays.frame
     const marched = marchedSize.value
     const edge = block.value
-    this.#scale.value.copy(size.value).divide(marched).divideScalar(edge)
+    const blocks = marched.clone().multiplyScalar(edge)
+    this.#scale.value.copy(size.value).divide(blocks)
     // Where the marched pixels of this frame lie in their blocks.
-    const { value: offset } = this.#offset
-    offset
+    this.#offset.value
       .setScalar((edge - 1) / 2)
       .sub(jitter.value)
-      .divide(marched)
-      .divideScalar(edge)
-    const [x, y] = [marched.x, marched.y].map(size => Math.floor(size / GLOW_PIXEL) + 1)
-    this.#target.setSize(x, y)
-    this.#smoothTarget.setSize(x, y)
+      .divide(blocks)
+    const { x, y } = marched.clone().divideScalar(GLOW_PIXEL).floor().addScalar(1)
+    for (const target of [this.#target, this.#smoothTarget]) target.setSize(x, y)
     this.#pass.render(renderer, this.#target)
     this.#smoothPass.render(renderer, this.#smoothTarget)
     this.#bolt.render(renderer, view, _offset, channel, power)
@@ -300,7 +292,8 @@ export class LightningPasses {
 
   /** Frees render targets and passes. */
   dispose(): void {
-    for (const owned of [this.#target, this.#smoothTarget]) owned.dispose()
-    for (const owned of [this.#pass, this.#smoothPass, this.#bolt, this.#density]) owned.dispose()
+    const targets = [this.#target, this.#smoothTarget]
+    const passes = [this.#pass, this.#smoothPass, this.#bolt, this.#density]
+    for (const owned of [...targets, ...passes]) owned.dispose()
   }
 }
