@@ -7,9 +7,10 @@ import {
   lightShafts,
   skyBackground,
   SunDirectionalLight,
+  type LightShafts,
   type LightShaftsQuality
 } from '@welkin/atmosphere'
-import { cloudAirShadow, CloudLightTable, CloudNoise, cloudPreset, clouds } from '@welkin/clouds'
+import { cloudAirShadow, cloudPreset, clouds, type CloudsNode } from '@welkin/clouds'
 import {
   BoxGeometry,
   HalfFloatType,
@@ -23,12 +24,17 @@ import {
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
 import { pass } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
-import { gpuMilliseconds, nextFrame, release, type HeadlessDevice } from '../headless/device'
+import { PassTimes } from '../../stories/src/valley/PassTimes'
+import { nextFrame, release, type HeadlessDevice } from '../headless/device'
 import type { Path } from './scene'
 import { median } from './statistics'
 
-const WARM_UP = 10
-const CLOUDS_WARM_UP = 60
+/** Frames of a picture before any are timed, and after each change of it. */
+const WARM_UP = 40
+const SETTLING = 3
+
+/** Times that all qualities are gone through: the clock of a GPU is another one after a second. */
+const ROUNDS = 4
 
 /** Towers along an edge of a city, and their distance [m]. */
 const TOWERS = 14
@@ -45,24 +51,27 @@ export interface ShaftCost {
   quality: LightShaftsQuality
   withoutMs: number
   shaftsMs: number
+  /** Passes by name and number, and what each takes more, in the order in which they are drawn [ms]. */
+  passes: [name: string, ms: number][]
 }
 
 /** A city, as it is drawn. */
-type CityOptions = Pick<ShaftCost, 'path' | 'cascades' | 'withClouds' | 'withFog'> & {
-  /** Quality of light shafts; null for none. */
-  quality: LightShaftsQuality | null
+type CityOptions = Pick<ShaftCost, 'path' | 'cascades' | 'withClouds' | 'withFog'>
+
+/** A picture of a city. */
+interface City {
+  readonly shafts: LightShafts | undefined
+  draw(): void
+  dispose(): void
 }
 
-/** Noise and table of light that all clouds here share. */
-const shared = { noise: new CloudNoise(), light: new CloudLightTable() }
-
-/** A city under a low sun in a `cascades` of shadow maps, drawn with or without shafts. */
-function city(
+/** A city under a low sun in a `cascades` of shadow maps, drawn with or without shafts; its clouds are made at once. */
+async function city(
   renderer: WebGPURenderer,
   size: readonly [number, number],
-  { path, cascades, withClouds, withFog, quality }: CityOptions
-): { draw: () => void; dispose: () => void } {
-  renderer.shadowMap.enabled = true
+  { path, cascades, withClouds, withFog }: CityOptions,
+  hasShafts: boolean
+): Promise<City> {
   const atmosphere = new Atmosphere().setSunAngles(12, 20)
   if (withFog) atmosphere.add(heightFog({ density: 1e-3, falloff: 150 }))
   const scene = new Scene()
@@ -95,9 +104,10 @@ function city(
   scene.add(light, light.target)
   const isForward = path === 'forward'
   const make = isForward ? forwardShafts : lightShafts
-  const shafts = quality === null ? undefined : make(atmosphere, camera, light, { quality })
+  const shafts = hasShafts ? make(atmosphere, camera, light) : undefined
   const scenePass = pass(scene, camera, { samples: 0 })
   const pipeline = new RenderPipeline(renderer)
+  let cloudsNode: CloudsNode | undefined
   if (isForward) {
     if (shafts) atmosphere.add(shafts)
     scene.backgroundNode = skyBackground(atmosphere)
@@ -106,10 +116,9 @@ function city(
     const [color, depth] = [scenePass.getTextureNode(), scenePass.getTextureNode('depth')]
     const air = aerialPerspective(color, depth, camera, atmosphere, { shafts })
     const layers = cloudPreset('fairWeather')
-    const cloudsNode = withClouds
-      ? clouds(air, depth, camera, atmosphere, layers, { quality: 'medium', ...shared })
-      : undefined
-    if (cloudsNode) {
+    if (withClouds) {
+      cloudsNode = clouds(air, depth, camera, atmosphere, layers, { quality: 'medium' })
+      await cloudsNode.bake(renderer)
       // As clouds drift, maps of them are drawn anew in some frames and not in others.
       cloudsNode.time = 0
       shafts?.add(cloudAirShadow(cloudsNode))
@@ -118,6 +127,7 @@ function city(
   }
   const target = new RenderTarget(size[0], size[1], { type: HalfFloatType })
   return {
+    shafts,
     draw: () => {
       nextFrame()
       renderer.setRenderTarget(target)
@@ -128,28 +138,73 @@ function city(
     dispose: () => {
       for (const owned of [scenePass, pipeline, target, light, atmosphere]) owned.dispose()
       shafts?.dispose()
+      cloudsNode?.dispose()
     }
   }
 }
 
+/** Times of the passes of a frame, numbered among those of their name [ms]. */
+async function passesOf(renderer: WebGPURenderer, times: PassTimes): Promise<Map<string, number>> {
+  const counts = new Map<string, number>()
+  const { passes } = await times.read(renderer)
+  return new Map(
+    passes.map(([title, ms]) => {
+      // three's shadow maps have the numbers of their lights.
+      const name = title.replace(/ \[.*\]/, '')
+      const count = (counts.get(name) ?? 0) + 1
+      counts.set(name, count)
+      return [`${name} ${count}`, ms]
+    })
+  )
+}
+
+const qualities = ['low', 'medium', 'high'] as const
+
+/** Times a city without shafts and with those of each quality, in turn. */
 async function timeCity(
   device: HeadlessDevice,
   size: readonly [number, number],
   frames: number,
   options: CityOptions
-): Promise<number> {
+): Promise<ShaftCost[]> {
   const renderer = await device.renderer(...size)
-  const { draw, dispose } = city(renderer, size, options)
-  const times: number[] = []
-  const warmUp = options.withClouds ? CLOUDS_WARM_UP : WARM_UP
-  for (let frame = 0; frame < warmUp + frames; frame++) {
-    draw()
-    const elapsed = await gpuMilliseconds(renderer)
-    if (frame >= warmUp) times.push(elapsed)
+  renderer.shadowMap.enabled = true
+  const times = new PassTimes()
+  renderer.inspector = times
+  const without = await city(renderer, size, options, false)
+  const lit = await city(renderer, size, options, true)
+  const variants = [without, ...qualities.map(() => lit)].map((drawn, i) => ({
+    drawn,
+    quality: qualities[i - 1],
+    totals: [] as number[],
+    passes: new Map<string, number[]>()
+  }))
+  for (let round = 0; round < ROUNDS; round++) {
+    for (const { drawn, quality, totals, passes } of variants) {
+      drawn.shafts?.set({ quality })
+      const warmUp = round === 0 ? WARM_UP : SETTLING
+      for (let frame = 0; frame < warmUp + frames / ROUNDS; frame++) {
+        drawn.draw()
+        const each = await passesOf(renderer, times)
+        if (frame < warmUp) continue
+        totals.push([...each.values()].reduce((sum, ms) => sum + ms, 0))
+        for (const [name, ms] of each) passes.set(name, [...(passes.get(name) ?? []), ms])
+      }
+    }
   }
-  dispose()
+  for (const each of [without, lit]) each.dispose()
   release(renderer)
-  return median(times)
+  const [bare, ...others] = variants.map(({ totals, passes }) => ({
+    ms: median(totals),
+    passes: new Map([...passes].map(([name, values]) => [name, median(values)]))
+  }))
+  return others.map(({ ms, passes }, i) => ({
+    ...options,
+    quality: qualities[i],
+    withoutMs: bare.ms,
+    shaftsMs: ms - bare.ms,
+    passes: [...passes].map(([name, each]) => [name, each - (bare.passes.get(name) ?? 0)])
+  }))
 }
 
 const cases = [
@@ -162,30 +217,33 @@ const cases = [
   { path: 'forward', cascades: 4, withClouds: false, withFog: true }
 ] as const
 
-/** Times light shafts of one shadow map and of four cascades, and under clouds. */
+/** Times light shafts of one shadow map and of four cascades, and under clouds; or those cases alone that are wanted. */
 export async function timeShafts(
   device: HeadlessDevice,
   size: readonly [number, number],
-  frames: number
+  frames: number,
+  isWanted: (what: CityOptions) => boolean = () => true
 ): Promise<ShaftCost[]> {
   const costs: ShaftCost[] = []
-  for (const what of cases) {
-    const withoutMs = await timeCity(device, size, frames, { ...what, quality: null })
-    for (const quality of ['low', 'medium', 'high'] as const) {
-      const ms = await timeCity(device, size, frames, { ...what, quality })
-      costs.push({ ...what, quality, withoutMs, shaftsMs: ms - withoutMs })
-    }
+  for (const what of cases.filter(isWanted)) {
+    costs.push(...(await timeCity(device, size, frames, what)))
   }
   return costs
 }
 
+/** Least difference of a pass that a line tells [ms]. */
+const LEAST_MS = 0.004
+
 /** A line of a report. */
 export const shaftLine = (cost: ShaftCost): string => {
-  const { path, cascades, withClouds, withFog, quality, withoutMs, shaftsMs } = cost
+  const { path, cascades, withClouds, withFog, quality, withoutMs, shaftsMs, passes } = cost
   const maps = cascades === 1 ? 'one map' : `${cascades} cascades`
   const casters = `${maps}${withClouds ? ', clouds' : ''}${withFog ? ', fog' : ''}`
+  const more = passes
+    .filter(([, ms]) => Math.abs(ms) > LEAST_MS)
+    .map(([name, ms]) => `${name.replace('Welkin.', '')} ${ms.toFixed(3)}`)
   return (
     `${path.padEnd(8)} light shafts, ${casters}, ${quality.padEnd(7)}` +
-    ` ${shaftsMs.toFixed(3)} ms   (without ${withoutMs.toFixed(3)} ms)`
+    ` ${shaftsMs.toFixed(3)} ms   (without ${withoutMs.toFixed(3)} ms; ${more.join(', ')})`
   )
 }

@@ -126,9 +126,7 @@ gpuTest(
     grid.setAir(1, 1, 0, 6.36e6)
     const thinning = float(1e-8) as Float
     const airTo = (distance: Float): SeenAir => ({
-      distance,
-      beyond: grid.beyond(distance, thinning),
-      depth: grid.depthAt(distance, thinning),
+      path: grid.pathTo(distance, thinning),
       thinning
     })
     // Neighbours are at other depths and in other light, so that none are mixed.
@@ -136,7 +134,8 @@ gpuTest(
       const isFar = pixel.x.add(pixel.y).mod(2).greaterThan(0.5)
       const distance = isFar.select(1e4, 1000).toConst() as Float
       const lit = vec3(distance.div(1e4)).toConst() as Vec3
-      return { lost: lit.mul(part), lit, all: lit, ...airTo(distance) }
+      const air = airTo(distance)
+      return { lost: lit.mul(part), lit, all: lit, whole: air.path, ...air }
     }
     grid.render(renderer, 1, march)
     // Rounding puts places a little beyond the middles of the first and the last pixels.

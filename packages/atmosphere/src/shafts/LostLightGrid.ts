@@ -47,11 +47,8 @@ const MAX_KEPT = 6e4
 /** Scale of light in the targets. */
 const LIGHT_SCALE = RADIANCE_SCALE / 8
 
-/** Least part of the air on a ray that is left beyond a depth: the sky is no farther. Smaller: float32 has noise there. */
-const LEAST_LEFT = 0.05
-
-/** Part that air thins out on a way below which it is next to even: float32 has noise there. */
-const NEXT_TO_EVEN = 0.01
+/** Least of 1 − x², where x is the part of a ray's air up to a depth: the sky is no farther. Smaller: half floats have noise there. */
+const LEAST_LEFT = 0.01
 
 /** Least extinction of the air, and the least part by which it thins out with each metre of height [1/m]. */
 const LEAST_EXTINCTION = 1e-12
@@ -60,8 +57,8 @@ const LEAST_THINNING = 1e-9
 /** Height over which the thinning of the air is found [m]. */
 export const THIN_HEIGHT = 1000
 
-/** Least part of the light of clear air that is seen. */
-const MIN_PART = 1e-7
+/** Least optical path of what is seen [–]. */
+const MIN_PATH = 1e-7
 
 /** Greatest light that is mixed [octaves]. */
 const MAX_MIXED = Math.log2(MAX_KEPT) - 4
@@ -83,8 +80,8 @@ function partsOf({ lost, lit }: LostLight): Vec3 {
   return taken.div(whole).clamp(-MAX_KEPT, 1)
 }
 
-/** Part of the light of clear air that is seen, of what lies beyond. */
-const shownOf = (beyond: Float): Float => beyond.oneMinus().max(MIN_PART)
+/** Part of the light of clear air without end that comes from an optical path: as if 1/(1 + τ) were left of it beyond. */
+const shownOf = (path: Float): Float => path.div(path.add(1)).toConst()
 
 /** First or last in each direction, of four by their number. */
 function cornerOf(index: Int): Vec2 {
@@ -94,18 +91,16 @@ function cornerOf(index: Int): Vec2 {
 
 /** Air of a ray, as far as a picture shows it. */
 export interface SeenAir {
-  /** Distance to what was drawn [m]. */
-  readonly distance: Float
-  /** Part of the light of clear air without end that lies beyond what is seen: see {@link LostLightGrid.beyond}. */
-  readonly beyond: Float
-  /** log₂ of the distance beyond which that part lies [m]. */
-  readonly depth: Float
+  /** Optical path in clear air that gives as much light as is seen: see {@link LostLightGrid.pathTo} [–]. */
+  readonly path: Float
   /** See {@link LostLightGrid.thinningOn}. */
   readonly thinning: Float
 }
 
 /** Light of a ray. */
 export interface LostLight extends SeenAir {
+  /** Path to what was drawn, whatever is before it. */
+  readonly whole: Float
   /** Light that it loses, linear sRGB of about that for unit irradiance. */
   readonly lost: Vec3
   /** Light of its air that is seen if nothing cast shadows, likewise; and all of it, up to what was drawn. */
@@ -123,7 +118,8 @@ export interface LostLight extends SeenAir {
  * silhouettes and edges of clouds. Those that are alike in light and depth count most. One that is farther than all loses light up to their depth:
  * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
  *
- * A depth is the distance at which clear air that thins out with height has as much light as is seen: clouds hide some of it.
+ * A depth is log₂ of the optical path of clear air, which thins out with height, that has as much light as is seen: clouds hide some of it.
+ * It is a measure, no more: a pixel finds it with two square roots, two quotients and a logarithm less than of an exponential profile.
  */
 export class LostLightGrid {
   /** Lost light with log₂ of the light that there is; its part of that with log₂ of the depth. */
@@ -144,7 +140,7 @@ export class LostLightGrid {
   readonly #density = number(1)
   /** Extinction of the air at the camera, the least of all colours [1/m]. Greater: dark pixels along the horizon (*Ridge at sunrise*). */
   readonly #extinction = number(1)
-  /** Part by which the air thins out with each metre of height [1/m], and the square of the cosine as which a level ray counts. */
+  /** Part by which the air thins out with each metre of height, and the least with each metre of a ray [1/m]. */
   readonly #thinning = number(1)
   readonly #grazing = number(1)
   #passes: readonly FragmentPass[] = []
@@ -183,7 +179,8 @@ export class LostLightGrid {
     const thinning = Math.max((air - above) / whole / THIN_HEIGHT, LEAST_THINNING)
     this.#extinction.value = whole
     this.#thinning.value = thinning
-    this.#grazing.value = 2 / (Math.PI * radius * thinning)
+    // Half of the air on a level ray, π r/(2k) under a root.
+    this.#grazing.value = Math.sqrt((2 * thinning) / (Math.PI * radius))
   }
 
   /**
@@ -199,12 +196,12 @@ export class LostLightGrid {
         const pixel = uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
         const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
         const found = march(at, pixel)
-        const { lost, all, distance, beyond, depth, thinning } = found
-        const scale = float(LIGHT_SCALE).div(shownOf(beyond)).toConst()
-        const growth = this.beyond(distance, thinning).oneMinus()
-        const light = log2(luminance(all).max(MIN_LIGHT).mul(LIGHT_SCALE).div(growth))
+        const { lost, all, whole } = found
+        const path = found.path.max(MIN_PATH).toConst() as Float
+        const scale = float(LIGHT_SCALE).div(shownOf(path)).toConst()
+        const light = log2(luminance(all).max(MIN_LIGHT).mul(LIGHT_SCALE).div(shownOf(whole)))
         lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), light))
-        partsOut.assign(vec4(partsOf(found), depth))
+        partsOut.assign(vec4(partsOf(found), log2(path)))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -248,29 +245,33 @@ export class LostLightGrid {
 
   /** Part by which the air on a ray thins out with each metre [1/m]; `cosView` is the cosine of its angle from the zenith. */
   thinningOn(cosView: Float): Float {
-    const half = cosView.mul(0.5).toConst() as Float
-    return half.mul(half).add(this.#grazing).sqrt().add(half).mul(this.#thinning).toConst()
+    return cosView.mul(this.#thinning).max(this.#grazing).toConst()
   }
 
-  /** Part of the light of thinning air without end that lies beyond a distance [m]. */
-  beyond(distance: Float, thinning: Float): Float {
+  /** Optical path of clear air up to a distance [m], which thins out: d/√(1 + (kd)²), much as 1 − exp(−kd) over k. */
+  pathTo(distance: Float, thinning: Float): Float {
     const thinned = distance.mul(thinning).toConst() as Float
-    const mean = thinned.negate().exp().oneMinus().div(thinned)
-    const path = distance.mul(thinned.lessThan(NEXT_TO_EVEN).select(thinned.mul(-0.5).add(1), mean))
-    return path.mul(this.#extinction).add(1).reciprocal()
+    const even = thinned.mul(thinned).add(1).inverseSqrt().mul(distance)
+    return even.mul(this.#extinction).toConst()
   }
 
-  /** log₂ of a distance, as it stands for light [m]. */
-  depthAt(distance: Float, thinning: Float): Float {
-    return log2(distance.min(thinning.reciprocal().mul(-Math.log(LEAST_LEFT))))
+  /** Distance up to which the air has an optical path [m]. */
+  #distanceAt(path: Float, thinning: Float): Float {
+    const even = path.div(this.#extinction).toConst() as Float
+    const thinned = even.mul(thinning).toConst() as Float
+    return even.mul(thinned.mul(thinned).oneMinus().max(LEAST_LEFT).inverseSqrt())
   }
 
-  /** log₂ of the distance beyond which a part lies [m]. */
-  depthOf(beyond: Float, thinning: Float): Float {
-    const path = shownOf(beyond).div(beyond.mul(this.#extinction)).toConst() as Float
-    const thinned = path.mul(thinning).toConst() as Float
-    const mean = thinned.oneMinus().max(LEAST_LEFT).log().negate().div(thinned)
-    return log2(path.mul(thinned.lessThan(NEXT_TO_EVEN).select(thinned.mul(0.5).add(1), mean)))
+  /**
+   * Path of a foreground, through which a part passes of what is behind: each has its part of the light that is seen.
+   *
+   * @param front - Path up to the foreground.
+   * @param behind - Path up to what is behind it; 0 where that is not seen.
+   */
+  pathThrough(front: Float, behind: Float, transmittance: Float): Float {
+    const before = behind.add(1).mul(transmittance.oneMinus()).toConst() as Float
+    const after = front.add(1).mul(transmittance).toConst() as Float
+    return front.mul(before).add(behind.mul(after)).div(before.add(after))
   }
 
   /**
@@ -284,19 +285,21 @@ export class LostLightGrid {
    */
   read(
     at: Vec2,
-    { beyond, depth: own, thinning }: Omit<SeenAir, 'distance'>,
+    { path, thinning }: SeenAir,
     tolerance: Float | null,
     lit: (nearer: Float, most: Float) => Vec3
   ): Vec3 {
     const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
-    const part = shownOf(beyond).toVar()
-    const shownAt = (depth: Float): Float => shownOf(this.beyond(depth.exp2(), thinning)).toConst()
+    const own = log2(path.max(MIN_PATH)).toConst() as Float
+    const part = shownOf(path).toVar()
+    const shownAt = (depth: Float): Float => shownOf(depth.exp2().toConst() as Float)
     const moved = (depth: Float): Float =>
       tolerance ? depth.sub(own).clamp(tolerance.negate(), tolerance).toConst() : float(0)
     if (tolerance) {
       If(tolerance.greaterThan(0), () => {
-        part.mulAssign(shownAt(own.add(moved(mean.w)).toConst()).div(shownAt(own)))
+        // The tangent: it moves little.
+        part.addAssign(part.mul(part.oneMinus()).mul(moved(mean.w).mul(Math.LN2)))
       })
     }
     const lost = mean.rgb.mul(part.div(LIGHT_SCALE)).toVar() as Vec3
@@ -330,7 +333,7 @@ export class LostLightGrid {
       })
       sums.divAssign(weights)
       const farther = sums.w.sub(own).add(2 * SAME_DEPTH)
-      const limit = sums.w.add(farther.max(0)).exp2()
+      const limit = this.#distanceAt(sums.w.add(farther.max(0)).exp2(), thinning)
       const most = farther.lessThan(SAME_DEPTH).select(limit, FAR) as Float
       lost.assign(lit(moved(sums.w).exp2(), most).mul(sums.rgb))
     })

@@ -1,5 +1,5 @@
 import { Vector2, type OrthographicCamera } from 'three'
-import { Fn, If, bool, float, mix, screenUV, uv, vec3 } from 'three/tsl'
+import { Fn, If, bool, float, screenUV, uv, vec3 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
@@ -26,17 +26,17 @@ const MIN_TRANSMITTANCE = 0.01
 /** Transmittance from which on a foreground is not seen. */
 const CLEAR = 0.99
 
-/** Air and foreground of a pixel, and octaves by which their depth may be off. */
-interface Seen extends Omit<SeenAir, 'distance'> {
+/** Air and foreground of a pixel, and octaves by which its distance may be off. */
+interface Seen extends SeenAir {
   readonly front?: SeenForeground
   readonly tolerance: Float | null
 }
 
-/** End of a view ray: displacement in the mapped space of what gives its direction, its length, and how far one sees [m]. */
-interface RayEnd {
+/** End of a view ray. */
+interface RayEnd extends Pick<ShaftRay, 'cosView' | 'distance'> {
+  /** Displacement in the mapped space of what gives the ray's direction [m], and the reciprocal of its length. */
   readonly offset: Vec3
-  readonly length: Float
-  readonly distance: Float
+  readonly inverse: Float
 }
 
 const _size = new Vector2()
@@ -135,9 +135,7 @@ export class ScreenShafts implements ScreenShadows {
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
     const at = this.#place
-    const cosView = end.offset.dot(this.#shafts.view.up).div(end.length) as Float
-    const thinning = this.grid.thinningOn(cosView)
-    const seen = this.#seenAt(at, end.distance, thinning, true, transmittance)
+    const seen = this.#seenAt(at, end, true, transmittance)
     const { front, tolerance } = seen
     const lost = this.grid.read(at, seen, tolerance, (nearer, most) => {
       const ray = this.#rayTo(end)
@@ -168,26 +166,29 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. */
-  #seenAt(at: Vec2, to: Float, thinning: Float, isRough: boolean, transmittance?: Float): Seen {
+  #seenAt(
+    at: Vec2,
+    end: Pick<RayEnd, 'distance' | 'cosView'>,
+    isRough: boolean,
+    transmittance?: Float
+  ): Seen {
     const { foreground, grid } = this
-    const beyond = grid.beyond(to, thinning).toVar()
-    const depth = grid.depthAt(to, thinning).toVar()
-    const air = { beyond, depth, thinning }
-    if (foreground === undefined) return { ...air, tolerance: null }
+    const { distance: to, cosView } = end
+    const thinning = grid.thinningOn(cosView)
+    const path = grid.pathTo(to, thinning).toVar()
+    if (foreground === undefined) return { path, thinning, tolerance: null }
     const passes = transmittance ?? foreground.transmittanceAt(at)
     const isSeen = passes.lessThan(CLEAR).toConst()
     const distance = to.toVar()
-    beyond.assign(beyond.max(this.#isForward))
+    const isBehind = this.#isForward.oneMinus().toConst()
+    path.mulAssign(isBehind)
     If(isSeen, () => {
       distance.assign(to.min(foreground.distanceAt(at, isRough)))
-      beyond.assign(mix(grid.beyond(distance, thinning), beyond, passes))
+      path.assign(grid.pathThrough(grid.pathTo(distance, thinning), path, passes))
     })
-    If(isSeen.or(this.#isForward.greaterThan(0)), () => {
-      depth.assign(grid.depthOf(beyond, thinning))
-    })
-    const behind = passes.mul(this.#isForward.oneMinus()).toConst()
+    const behind = passes.mul(isBehind).toConst()
     const front = { distance, before: passes.oneMinus().toConst(), behind }
-    return { ...air, front, tolerance: isSeen.select(foreground.tolerance, 0).toConst() }
+    return { path, thinning, front, tolerance: isSeen.select(foreground.tolerance, 0).toConst() }
   }
 
   /** Light that the ray of a pixel of the grid loses. */
@@ -195,8 +196,7 @@ export class ScreenShafts implements ScreenShadows {
     const { view, shadowedAir, steps } = this.#shafts
     const ray = this.#rayTo(this.#endIn(renderer, at))
     const { distance } = ray
-    const thinning = this.grid.thinningOn(ray.cosView)
-    const { front, beyond, depth } = this.#seenAt(at, distance, thinning, false)
+    const { front, path, thinning } = this.#seenAt(at, ray, false)
     const { isOrthographicCamera } = this.#shafts.camera as OrthographicCamera
     const start = isOrthographicCamera
       ? view.toMapped(vec3(this.#rays.position(renderer, at, float(0.5)).xy, 0))
@@ -213,7 +213,8 @@ export class ScreenShafts implements ScreenShadows {
     }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
     const { all, seen: lit } = seenLight(distance, front, this.#lightOn(ray))
-    return { lost: this.#color(lost), lit, all, distance, beyond, depth, thinning }
+    const whole = this.grid.pathTo(distance, thinning)
+    return { lost: this.#color(lost), lit, all, whole, path, thinning }
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
@@ -227,21 +228,18 @@ export class ScreenShafts implements ScreenShadows {
   #endAt(position: Vec3, isSky: Bool): RayEnd {
     const { view } = this.#shafts
     const offset = view.toMapped(position).toConst() as Vec3
-    const length = offset.length().max(1e-3).toConst() as Float
-    const distance = length.toVar() as Float
-    If(isSky, () => {
-      const hitsGround = offset.dot(view.up).lessThan(length.mul(view.viewpoint.cosHorizon)) as Bool
-      distance.assign(distanceOf({ hitsGround }))
-    })
-    return { offset, length, distance }
+    const square = offset.dot(offset).max(1e-6).toConst() as Float
+    const inverse = square.inverseSqrt().toConst() as Float
+    const cosView = offset.dot(view.up).mul(inverse).toConst() as Float
+    const beyond = distanceOf({ hitsGround: cosView.lessThan(view.viewpoint.cosHorizon) as Bool })
+    const distance = isSky.select(beyond, square.mul(inverse)).toConst() as Float
+    return { offset, inverse, cosView, distance }
   }
 
-  #rayTo({ offset, length, distance }: RayEnd): ShaftRay {
-    const { up, lightDirection } = this.#shafts.view
-    const direction = offset.div(length).toConst() as Vec3
-    const cosView = direction.dot(up).clamp(-1, 1).toConst() as Float
-    const cosViewLight = direction.dot(lightDirection).toConst() as Float
-    return { direction, cosView, cosViewLight, distance }
+  #rayTo({ offset, inverse, cosView, distance }: RayEnd): ShaftRay {
+    const direction = offset.mul(inverse).toConst() as Vec3
+    const cosViewLight = direction.dot(this.#shafts.view.lightDirection).toConst() as Float
+    return { direction, cosView: cosView.clamp(-1, 1).toConst(), cosViewLight, distance }
   }
 
   /** Light for unit irradiance [1/sr] as the grid keeps it. */

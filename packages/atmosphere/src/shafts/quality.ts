@@ -29,7 +29,7 @@ export const qualities = {
     spacing: 7,
     groups: 3,
     samples: 3,
-    inFog: 20
+    inFog: 32
   },
   high: {
     rows: 1024,

@@ -94,7 +94,7 @@ export class BoltPass {
   /** The channel's place in its own frame, from the camera [m]. */
   readonly #place = vector3()
   readonly #projection = matrix4()
-  /** Part of the picture that is drawn: its corner, and its size, over the picture's; y down. */
+  /** Scale and offset from places in the picture to those in its part that is drawn, y down. */
   readonly #crop = vector4()
   #channel: PlacedChannel | null = null
   /** Luminous intensity of a metre of the stem, and that of branches, times `luminanceScale` [cd/m]. */
@@ -194,11 +194,11 @@ export class BoltPass {
       // In front of the camera and not in clouds, or else nowhere.
       const isSeen = a.w.min(b.w).greaterThan(0).and(passing.x.max(passing.y).greaterThan(0))
       const inPicture = pixel.div(frame.size).mul(vec2(1, -1)).add(0.5)
-      const drawn = inPicture.sub(this.#crop.xy).div(this.#crop.zw).sub(0.5)
+      const drawn = inPicture.mul(this.#crop.xy).add(this.#crop.zw).sub(0.5)
       return isSeen.select(vec4(drawn.mul(vec2(2, -2)), 0.5, 1), vec4(2, 2, 2, 1))
     })()
     material.fragmentNode = Fn(() => {
-      const here = vec2(screenUV).mul(this.#crop.zw).add(this.#crop.xy).toConst() as Vec2
+      const here = vec2(screenUV).sub(this.#crop.zw).div(this.#crop.xy).toConst() as Vec2
       const beside = place.x.sub(place.x.clamp(0, place.z)).toConst() as Float
       const square = beside.mul(beside).add(place.y.mul(place.y)).toConst() as Float
       const distance = place.w.toConst() as Float
@@ -227,7 +227,7 @@ export class BoltPass {
 
   /** Light of the channel [luminance × `luminanceScale`]. To be called inside of a shader function. @param at - In the picture, y down. */
   sample(at: Vec2): Vec3 {
-    const drawn = at.sub(this.#crop.xy).div(this.#crop.zw).toConst() as Vec2
+    const drawn = at.mul(this.#crop.xy).add(this.#crop.zw).toConst() as Vec2
     const light = vec3(0).toVar() as Variable<Vec3>
     If(drawn.clamp(0, 1).equal(drawn).all(), () => {
       light.assign(this.#texture.sample(drawn).level(0).rgb)
@@ -289,7 +289,7 @@ export class BoltPass {
     box.min.multiply(all).subScalar(HALF_WIDTH)
     box.max.multiply(all).addScalar(HALF_WIDTH)
     box.intersect(_picture.set(_zero, _corner.set(width, height)))
-    this.#crop.value.set(2, 2, 1, 1)
+    this.#crop.value.set(0, 0, 2, 2)
     if (box.isEmpty()) return false
     // In steps, and growing alone: a texture of a new size is a new texture.
     const [across, down] = (['x', 'y'] as const).map(axis => {
@@ -300,7 +300,7 @@ export class BoltPass {
     this.#target.setSize(across, down)
     const left = Math.min(Math.floor(box.min.x), width - across)
     const top = Math.min(Math.floor(box.min.y), height - down)
-    this.#crop.value.set(left / width, top / height, across / width, down / height)
+    this.#crop.value.set(width / across, height / down, -left / across, -top / down)
     return true
   }
 

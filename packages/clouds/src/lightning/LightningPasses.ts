@@ -9,6 +9,7 @@ import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/ts
 import type { Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
 import { marchedPixel } from '../march/tsl/marchedPixel'
+import { CORNERS } from '../temporal/tsl/cells'
 import { viewRayAt } from '../march/tsl/viewRay'
 import {
   loop,
@@ -20,7 +21,7 @@ import {
   type Vec3,
   type Vec4
 } from '../tsl-types'
-import { number } from '../uniforms'
+import { number, vector2 } from '../uniforms'
 import { BoltPass } from './BoltPass'
 import { CHANNEL_COLOR, STEM_POINTS, type PlacedChannel, type StormColumn } from './channel'
 import { StormDensity } from './StormDensity'
@@ -79,6 +80,9 @@ export class LightningPasses {
   /** Luminous power, times `luminanceScale` [lm]. */
   readonly power = number()
   readonly #clouds: CloudsNode
+  /** Scale and offset from places in the picture to those among marched pixels: quotients of uniforms cost each pixel a division. */
+  readonly #scale = vector2()
+  readonly #offset = vector2()
   /** Points of the stem from the camera, in the mapped space [m], and scattering by air there [1/m]. */
   readonly #stem: readonly Vector4[] = Array.from({ length: STEM_POINTS }, () => new Vector4())
   readonly #stemArray = vec4Array(this.#stem as Vector4[])
@@ -191,17 +195,14 @@ export class LightningPasses {
   #smoothed(): Vec4 {
     return Fn(() => {
       const here = uv() as unknown as Vec2
-      const texel = vec2(0.5 * GLOW_PIXEL)
+      const texel = vec2(GLOW_PIXEL)
         .div(this.#clouds.passes.viewRays.frame.marchedSize)
         .toConst() as Vec2
       const glow = vec4(0).toVar() as Variable<Vec4>
-      for (const [x, y] of [
-        [-1, -1],
-        [1, -1],
-        [-1, 1],
-        [1, 1]
-      ])
-        glow.addAssign(this.#glow.sample(here.add(texel.mul(vec2(x, y)))).level(0))
+      for (const [x, y] of CORNERS) {
+        const place = here.add(texel.mul(vec2(x - 0.5, y - 0.5)))
+        glow.addAssign(this.#glow.sample(place).level(0))
+      }
       // Green lies between red and blue as λ⁻⁴ does: their mean by geometry.
       const green = glow.x.pow(1 - GREEN_SHARE).mul(glow.y.pow(GREEN_SHARE))
       const cloud = vec3(glow.x, green, glow.y).div(glow.z.max(1e-3))
@@ -243,12 +244,9 @@ export class LightningPasses {
     const here = uv() as unknown as Vec2
     const result = color.toVar() as Variable<Vec3>
     If(this.power.greaterThan(0), () => {
-      // Where the marched pixels of this frame lie in their blocks.
-      const { size, block, jitter, marchedSize } = this.#clouds.passes.viewRays.frame
-      const marched = here.mul(size).sub(jitter.add(0.5)).div(block).add(0.5).div(marchedSize)
+      const marched = here.mul(this.#scale).add(this.#offset)
       const glow = this.#smooth.sample(marched).level(0).toConst() as Vec4
-      const air = vec3(...CHANNEL_COLOR).mul(glow.w)
-      const light = glow.xyz.mul(transmittance.oneMinus()).add(air)
+      const light = glow.xyz.mul(transmittance.oneMinus()).add(vec3(...CHANNEL_COLOR).mul(glow.w))
       result.addAssign(light.mul(this.power.div(STORED_POWER)).add(this.#bolt.sample(here)))
     })
     return result
@@ -275,11 +273,18 @@ export class LightningPasses {
     })
     this.#density.update(_offset)
     this.power.value = power.all
-    const { passes } = this.#clouds
-    const marched = passes.viewRays.frame.marchedSize.value
-    const [x, y] = [marched.x, marched.y].map(size => Math.floor(size / GLOW_PIXEL) + 1)
-    this.#target.setSize(x, y)
-    this.#smoothTarget.setSize(x, y)
+    const { size, marchedSize, block, jitter } = this.#clouds.passes.viewRays.frame
+    const marched = marchedSize.value
+    const edge = block.value
+    const blocks = marched.clone().multiplyScalar(edge)
+    this.#scale.value.copy(size.value).divide(blocks)
+    // Where the marched pixels of this frame lie in their blocks.
+    this.#offset.value
+      .setScalar((edge - 1) / 2)
+      .sub(jitter.value)
+      .divide(blocks)
+    const { x, y } = marched.clone().divideScalar(GLOW_PIXEL).floor().addScalar(1)
+    for (const target of [this.#target, this.#smoothTarget]) target.setSize(x, y)
     this.#pass.render(renderer, this.#target)
     this.#smoothPass.render(renderer, this.#smoothTarget)
     this.#bolt.render(renderer, view, _offset, channel, power)
@@ -287,7 +292,8 @@ export class LightningPasses {
 
   /** Frees render targets and passes. */
   dispose(): void {
-    for (const owned of [this.#target, this.#smoothTarget]) owned.dispose()
-    for (const owned of [this.#pass, this.#smoothPass, this.#bolt, this.#density]) owned.dispose()
+    const targets = [this.#target, this.#smoothTarget]
+    const passes = [this.#pass, this.#smoothPass, this.#bolt, this.#density]
+    for (const owned of [...targets, ...passes]) owned.dispose()
   }
 }

@@ -60,6 +60,13 @@ function texturesOf({ textures }: RenderTarget): Record<keyof CloudTargets, Chan
   return { light, distances }
 }
 
+/** Has nodes of {@link texturesOf} read another target. */
+function showTextures(nodes: ReturnType<typeof texturesOf>, { textures }: RenderTarget): void {
+  const [light, distances] = textures
+  nodes.light.value = light
+  nodes.distances.value = distances
+}
+
 /**
  * Marches one pixel of each block: {@link MarchedTargets}.
  *
@@ -83,24 +90,17 @@ function marchPixels(scene: CloudScene, last: CloudTargets): Outputs {
 }
 
 /** Shades what was marched: light with the air in front of it, and its distances. */
-function shadePixels(
-  scene: CloudScene,
-  marched: MarchedTargets,
-  cast: CastLight,
-  fall: FallPass | undefined
-): Outputs {
+function shadePixels(scene: CloudScene, marched: MarchedTargets, cast: CastLight): Outputs {
   const { field, viewRays } = scene
   return outputs<[Vec4, Vec4]>(2, ([color, distances]) => {
     const { at, noise } = marchedPixel(viewRays)
     const here = uv() as unknown as Vec2
     const found = cast.pointsAt(here)
-    const { ray: ofClouds } = cast.rayAt(here)
-    const fallen = fall?.read(here, ofClouds)
-    const ray = fallen?.ray ?? ofClouds
+    const { ray } = cast.rayAt(here)
     color.assign(vec4(0, 0, 0, 1))
     const { code, steps } = unpackFound(ray.w)
     distances.assign(vec4(ray.xy, code, steps))
-    If(ofClouds.z.lessThan(1), () => {
+    If(ray.z.lessThan(1), () => {
       const { direction, directionView } = viewRayAt(viewRays, at)
       const points = {
         distances: marched.distances.sample(here).level(0).toConst() as Vec4,
@@ -108,19 +108,15 @@ function shadePixels(
         lit: cast.litOn(found, direction, noise)
       }
       const radiance = shadePoints(scene, direction, points)
-      const seen = { radiance, transmittance: ofClouds.z, distance: ofClouds.x.exp2() }
+      const seen = { radiance, transmittance: ray.z, distance: ray.x.exp2() }
       color.assign(withAerialPerspective(field.view, seen, directionView, viewRays.frame.gain))
     })
-    if (fallen) {
-      const { before, light } = fallen
-      color.assign(vec4(color.rgb.mul(before).add(light.mul(viewRays.frame.gain)), ray.z))
-    }
   })
 }
 
 /**
  * Render targets and passes of a camera's clouds. A frame takes five passes: the weather around the camera, the
- * march of one pixel of each block, its light (before it, with most casters, {@link CastLight}, and while anything falls, {@link FallPass}), the statistics of the cells between marched pixels, and the upscale, which blends them
+ * march of one pixel of each block, its light (before it, with most casters, {@link CastLight}; after it, while anything falls, {@link FallPass}), the statistics of the cells between marched pixels, and the upscale, which blends them
  * into the history of the frames before.
  */
 export class CloudRenderer {
@@ -144,7 +140,7 @@ export class CloudRenderer {
   readonly #upscale: readonly FragmentPass[]
   /** Clouds of the pixels that this frame has marched, not lit. */
   readonly seen: MarchedTargets
-  /** Light and distances of the pixels that this frame has marched. */
+  /** Light and distances of the pixels that this frame has marched, with what falls: the nodes stay, their textures change. */
   readonly marched = texturesOf(this.#shadedTarget)
   /** Cells between those pixels: see `Cell`. */
   readonly cells = texturesOf(this.#cellsTarget)
@@ -167,11 +163,9 @@ export class CloudRenderer {
     this.seen = { distances, shares, ray }
     this.#cast = new CastLight(scene, this.seen)
     this.#precipitation = precipitation
-    this.#fall = precipitation?.passOf(scene, this.seen, this.#cast)
-    this.#shade = new FragmentPass(
-      'Welkin.CloudsShade',
-      shadePixels(scene, this.seen, this.#cast, this.#fall)
-    )
+    const ofClouds = texturesOf(this.#shadedTarget)
+    this.#fall = precipitation?.passOf(scene, this.seen, this.#cast, ofClouds)
+    this.#shade = new FragmentPass('Welkin.CloudsShade', shadePixels(scene, this.seen, this.#cast))
     for (const { material } of [this.#march, this.#shade]) {
       const key = material.customProgramCacheKey.bind(material)
       material.customProgramCacheKey = () => key() + kindsOf(field) + this.#cast.version
@@ -218,15 +212,14 @@ export class CloudRenderer {
     this.#weatherMap.render(renderer, up)
     this.#march.render(renderer, this.#marchedTarget)
     this.#cast.render(renderer)
-    this.#fall?.render(renderer, this.#precipitation?.isFalling === true)
     this.#shade.render(renderer, this.#shadedTarget)
+    const isFalling = this.#precipitation?.isFalling === true
+    showTextures(this.marched, this.#fall?.render(renderer, isFalling) ?? this.#shadedTarget)
     this.#gather.render(renderer, this.#cellsTarget)
     this.#current = 1 - this.#current
     const target = this.#accumulatedTargets[this.#current]
     this.#upscale[this.#current].render(renderer, target)
-    const [light, distances] = target.textures
-    this.accumulated.light.value = light
-    this.accumulated.distances.value = distances
+    showTextures(this.accumulated, target)
   }
 
   /** Compiles passes with code for storms anew where layers of storms come or go, and the light's pass where casters do. */

@@ -1,13 +1,13 @@
 import { FragmentPass, outputs, tableTarget, type Outputs } from '@welkin/atmosphere'
-import { FloatType, NearestFilter, type RenderTarget } from 'three'
+import { NearestFilter, type RenderTarget } from 'three'
 import { float, If, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { ShadingContext } from '../light/tsl/shadingContext'
 import { CORNERS } from '../temporal/tsl/cells'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { encodeDistance } from '../temporal/tsl/packing'
+import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import type { Float, LevelTexture, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
-import { number } from '../uniforms'
 import { withAerialPerspective } from './tsl/aerialPerspective'
 import type { FallOnRays, LitRays } from './tsl/fallOnRays'
 import type { MarchedTargets } from './tsl/marchedPixel'
@@ -16,16 +16,6 @@ import { viewRayAt, type FrameInputs } from './tsl/viewRay'
 /** Inputs of the pass. */
 export interface FallScene extends ShadingContext {
   readonly viewRays: FrameInputs
-}
-
-/** Precipitation before and behind the clouds of a pixel, and the ray of both. */
-export interface FallOnPixel {
-  /** Light of what falls, with the air before it, as `withAerialPerspective` has it at a gain of 1. */
-  readonly light: Vec3
-  /** Share of the clouds' light that passes what falls before them. */
-  readonly before: Float
-  /** `MarchedTargets.ray` of clouds and of what falls. */
-  readonly ray: Vec4
 }
 
 /**
@@ -38,10 +28,6 @@ export const sharing = { from: 33_000 }
 export const fallBlockOf = (block: number, pixels: number): number =>
   block > 1 && pixels >= sharing.from ? 2 : 1
 
-/** Factor of a share in [0, 1] that is packed as the fraction of a whole number, and of `packFound`'s numbers, which have 11 bits. */
-const BEHIND = 0.5
-const FOUND = 2048
-
 /**
  * Differences of log₂ ends between which a ray that ends nearer than the pixel's own loses its weight, and the weight that is left:
  * greater, and rain before a ridge shows beside it, too (*Valley, all day*).
@@ -50,30 +36,31 @@ const SAME_END = [-0.3, -0.1] as const
 const LEAST_WEIGHT = 1e-3
 
 /**
- * Precipitation on the rays of a frame, with its light: a pass between the march and the light of the clouds. It is softer than clouds are, and takes
- * many steps: four marched pixels share a ray, which goes through each of them in turn, and pixels take what lies between the
- * four rays around them. What falls is kept with its stretch of the ray, so that clouds and ground hide it at their own edges.
+ * Precipitation on the rays of a frame, with its light: two passes after the light of the clouds, which knows nothing of it. It is softer than clouds
+ * are, and takes many steps: four marched pixels share a ray between them, others in each round, and pixels take what lies between the
+ * four rays around them, before and behind their clouds. What falls is kept with its stretch of the ray, so that clouds and ground hide it at
+ * their own edges.
  */
 export class FallPass {
   readonly #frame: FrameInputs['frame']
-  readonly #target = fallTarget('Fall')
-  readonly #spreadTarget = fallTarget('FallSpread')
+  readonly #target = tableTarget('Welkin.CloudsFall', 1, 1, 2, NearestFilter)
+  readonly #spreadTarget = tableTarget('Welkin.CloudsFallSpread', 1, 1, 2)
   readonly #passes: readonly FragmentPass[]
-  readonly #spread: readonly LevelTexture<Vec2>[]
-  /** 1 while anything falls, else 0: textures are of an earlier frame. */
-  readonly #falls = number()
   /** False until the passes were drawn, even if nothing falls: rain begins without a stutter. */
   #isCompiled = false
 
-  constructor(scene: FallScene, precipitation: FallOnRays, marched: MarchedTargets, cast: LitRays) {
+  constructor(
+    scene: FallScene,
+    precipitation: FallOnRays,
+    marched: MarchedTargets,
+    cast: LitRays,
+    shaded: CloudTargets
+  ) {
     this.#frame = scene.viewRays.frame
     const fallen = nodesOf(this.#target)
-    this.#spread = nodesOf(this.#spreadTarget)
-    // Ends and what `packFound` holds are too fine for half floats.
-    this.#spreadTarget.textures[1].type = FloatType
     this.#passes = [
       new FragmentPass('Welkin.CloudsFall', draw(scene, precipitation, marched, cast)),
-      new FragmentPass('Welkin.CloudsFallSpread', spread(scene, fallen, marched, cast))
+      new FragmentPass('Welkin.CloudsFallSpread', spread(scene, fallen, marched, cast, shaded))
     ]
   }
 
@@ -94,30 +81,19 @@ export class FallPass {
     this.#spreadTarget.setSize(width, height)
   }
 
-  /** Draws the passes where anything falls; the march and the casters' light go first. */
-  render(renderer: Renderer, isFalling: boolean): void {
-    this.#falls.value = Number(isFalling)
-    if (this.#isCompiled && !isFalling) return
-    this.#isCompiled = true
-    const [draw, spread] = this.#passes
-    draw.render(renderer, this.#target)
-    spread.render(renderer, this.#spreadTarget)
-  }
-
   /**
-   * Precipitation before and behind the clouds of a pixel. To be called inside of a shader function.
+   * Draws the passes where anything falls; the light of the clouds goes first.
    *
-   * @param clouds - The pixel's ray, with clouds alone.
+   * @returns Light and distances of clouds and of what falls; undefined where nothing does.
    */
-  read(here: Vec2, clouds: Vec4): FallOnPixel {
-    const falls = this.#falls.greaterThan(0).toConst()
-    const [light, ray] = this.#spread.map(each => each.sample(here).level(0).toConst() as Vec4)
-    const found = ray.w.floor().toConst() as Float
-    return {
-      light: falls.select(light.xyz.div(this.#frame.nightGain), vec3(0)).toConst(),
-      before: falls.select(ray.w.sub(found).div(BEHIND), 1).toConst(),
-      ray: falls.select(vec4(ray.xyz, found.div(FOUND)), clouds).toConst()
+  render(renderer: Renderer, isFalling: boolean): RenderTarget | undefined {
+    if (isFalling || !this.#isCompiled) {
+      this.#isCompiled = true
+      const [draw, spread] = this.#passes
+      draw.render(renderer, this.#target)
+      spread.render(renderer, this.#spreadTarget)
     }
+    return isFalling ? this.#spreadTarget : undefined
   }
 
   /** Frees its textures. */
@@ -127,8 +103,11 @@ export class FallPass {
   }
 }
 
-const fallTarget = (name: string): RenderTarget =>
-  tableTarget(`Welkin.Clouds${name}`, 1, 1, 2, NearestFilter)
+/**
+ * Middle of the pixels that share a ray, from the first of them: the ray goes there, as far from each. Through one of them: grain of that one
+ * is stronger, and a screen door easier to see (*Rain and snow*).
+ */
+const middleOf = (fallBlock: Float): Float => fallBlock.sub(1).mul(0.5)
 
 const nodesOf = ({ textures }: RenderTarget): LevelTexture<Vec2>[] =>
   textures.map(each => texture(each) as unknown as LevelTexture<Vec2>)
@@ -152,7 +131,7 @@ function draw(
     const texel = uv().mul(marchedSize.div(fallBlock).ceil()).floor().toConst() as unknown as Vec2
     const own = texel.mul(fallBlock).add(fallPixel).min(marchedSize.sub(1)).toConst() as Vec2
     const here = own.add(0.5).div(marchedSize).toConst() as Vec2
-    const pixel = own.mul(block).add(jitter).min(size.sub(1))
+    const pixel = own.add(middleOf(fallBlock)).mul(block).add(jitter).min(size.sub(1))
     const { direction, directionView } = viewRayAt(
       scene.viewRays,
       pixel.add(0.5).div(size).toConst()
@@ -171,45 +150,48 @@ function draw(
   })
 }
 
-/** Spreads what rays have found over the pixels between them: before and behind each pixel's own clouds, up to its own end. */
+/** Lays what rays have found over the pixels between them: before and behind each pixel's own clouds, up to its own end. */
 function spread(
   { viewRays }: FallScene,
   fallen: readonly LevelTexture<Vec2>[],
   marched: MarchedTargets,
-  cast: LitRays
+  cast: LitRays,
+  shaded: CloudTargets
 ): Outputs {
-  const { marchedSize, fallBlock, fallPixel } = viewRays.frame
-  return outputs<[Vec4, Vec4]>(2, ([radiance, seen]) => {
+  const { marchedSize, fallBlock, fallPixel, gain, nightGain } = viewRays.frame
+  return outputs<[Vec4, Vec4]>(2, ([color, seen]) => {
     const here = uv() as unknown as Vec2
     const size = marchedSize.div(fallBlock).ceil().toConst() as Vec2
-    const place = here.mul(marchedSize).floor().sub(fallPixel).div(fallBlock).toConst() as Vec2
+    const pixel = here.mul(marchedSize).floor().sub(fallPixel).sub(middleOf(fallBlock))
+    const place = pixel.div(fallBlock).toConst() as Vec2
     const first = place.floor().toConst() as Vec2
     const part = place.sub(first).toConst() as Vec2
-    const { ray } = cast.rayAt(here)
-    const { shares } = cast.pointsAt(here)
-    const distances = marched.distances.sample(here).level(0).toConst() as Vec4
-    const end = endOf(ray, distances)
     const corners = CORNERS.map(([x, y]) => {
       const index = first.add(vec2(x, y)).clamp(vec2(0), size.sub(1))
       const at = index.add(0.5).div(size).toConst() as Vec2
       const own = fallen[1].sample(at).level(0).toConst() as Vec4
       const between = (x ? part.x : part.x.oneMinus()).mul(y ? part.y : part.y.oneMinus())
-      const fits = own.w
-        .sub(end)
-        .smoothstep(...SAME_END)
-        .add(LEAST_WEIGHT)
-      return { at, own, weight: between.mul(fits).toConst() }
+      return { at, own, between }
     })
-    const weights = corners.reduce<Float>((sum, { weight }) => sum.add(weight), float(0))
     const most = corners.reduce<Float>((sum, { own }) => sum.max(own.x), float(0))
-    radiance.assign(vec4(0))
-    const found = ray.w.mul(FOUND).round().toConst() as Float
-    seen.assign(vec4(ray.xyz, found.add(BEHIND)))
+    const ofClouds = shaded.light.sample(here).level(0).toConst() as Vec4
+    const known = shaded.distances.sample(here).level(0).toConst() as Vec4
+    color.assign(ofClouds)
+    seen.assign(known)
     If(most.greaterThan(0), () => {
+      const { ray } = cast.rayAt(here)
+      const { shares } = cast.pointsAt(here)
+      const distances = marched.distances.sample(here).level(0).toConst() as Vec4
+      const end = endOf(ray, distances)
+      const weighted = corners.map(({ at, own, between }) => {
+        const fits = own.w.sub(end).smoothstep(...SAME_END)
+        return { at, own, weight: between.mul(fits.add(LEAST_WEIGHT)).toConst() as Float }
+      })
+      const weights = weighted.reduce<Float>((sum, { weight }) => sum.add(weight), float(0))
       /** Sums of opacity, and by that of its stretch. */
       const sums = vec3(0).toVar() as Variable<Vec3>
       const light = vec4(0).toVar() as Variable<Vec4>
-      for (const { at, own, weight } of corners) {
+      for (const { at, own, weight } of weighted) {
         sums.addAssign(vec3(1, own.yz).mul(own.x.mul(weight)))
         light.addAssign(fallen[0].sample(at).level(0).mul(weight))
       }
@@ -225,14 +207,15 @@ function spread(
       const beforePoints = before(distances)
       const hidden = shares.dot(vec4(all).sub(beforePoints).max(0))
       const shown = all.sub(hidden).max(0).toConst() as Float
-      const ofClouds = shares.dot(beforePoints.mul(opacity).oneMinus()).toConst() as Float
+      const left = shares.dot(beforePoints.mul(opacity).oneMinus()).toConst() as Float
       const weight = opacity.mul(shown).toConst() as Float
-      const both = weight.add(ofClouds).max(1e-9)
-      const distance = middle.mul(weight).add(ray.x.exp2().mul(ofClouds)).div(both)
+      const both = weight.add(left).max(1e-9)
+      const distance = middle.mul(weight).add(ray.x.exp2().mul(left)).div(both)
       const through = opacity.mul(all).oneMinus().mul(ray.z)
-      const share = ofClouds.div(shares.dot(vec4(1)).max(1e-6)).clamp()
-      radiance.assign(light.mul(shown.mul(perWeight)))
-      seen.assign(vec4(encodeDistance(distance), ray.y, through, found.add(share.mul(BEHIND))))
+      const share = left.div(shares.dot(vec4(1)).max(1e-6)).clamp()
+      const added = light.rgb.mul(shown.mul(perWeight).mul(gain.div(nightGain)))
+      color.assign(vec4(ofClouds.rgb.mul(share).add(added), through))
+      seen.assign(vec4(encodeDistance(distance), known.yzw))
     })
   })
 }

@@ -127,7 +127,7 @@ export class FrameUniforms {
   readonly block = number(1)
   /** Pixel of the block that this frame marches [pixels]. */
   readonly jitter = vector2()
-  /** Marched pixels along an edge of those that share a ray through what falls, and the one of them that this frame's goes through. */
+  /** Marched pixels along an edge of those that share a ray through what falls, and the first that does so in this frame. */
   readonly fallBlock = number(1)
   readonly fallPixel = vector2()
   /** Shift of the noise of steps, in [0, 1). */

@@ -12,6 +12,7 @@ import { meanColumnOf } from '../layers/meanColumn'
 import { windAxis } from '../layers/wind'
 import type { ShadingContext } from '../light/tsl/shadingContext'
 import { FallPass, type FallScene } from '../march/FallPass'
+import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import type { FallOnRay, LitRays } from '../march/tsl/fallOnRays'
 import type { MarchedTargets } from '../march/tsl/marchedPixel'
 import { POINTS } from '../march/tsl/seenPoints'
@@ -159,8 +160,8 @@ export class PrecipitationShafts {
   }
 
   /** The pass that draws it, for the clouds of a node. */
-  passOf(scene: FallScene, marched: MarchedTargets, cast: LitRays): FallPass {
-    return new FallPass(scene, this, marched, cast)
+  passOf(scene: FallScene, marched: MarchedTargets, cast: LitRays, shaded: CloudTargets): FallPass {
+    return new FallPass(scene, this, marched, cast, shaded)
   }
 
   /** Altitude above which nothing falls; below 0 where nothing falls at all [m]. */
