@@ -48,11 +48,18 @@ export const sources: Record<string, () => HeightSource | PageSource> = {
           .split('/')
           .map(Number)
         const data = new Uint8ClampedArray(4 * TILE ** 2)
+        // Tables of sines: what is timed is no drawing of pixels.
+        const angle = (300 * 2 * Math.PI) / 2 ** z
+        const waves = (first: number, wave: (angle: number) => number): Float32Array =>
+          Float32Array.from({ length: TILE }, (_, i) => wave(angle * (first + i / TILE)))
+        const along = waves(x, a => 500 + 250 * Math.sin(a))
+        const down = waves(y, a => 100 * Math.sin(3.1 * a))
         for (let i = 0; i < TILE ** 2; i++) {
-          const along = (2 * Math.PI * (x + (i % TILE) / TILE)) / 2 ** z
-          const down = (2 * Math.PI * (y + Math.floor(i / TILE) / TILE)) / 2 ** z
-          const value = 32_768 + hills(300 * along, 300 * down)
-          data.set([value / 256, value % 256, (value % 1) * 256, 255], 4 * i)
+          const value = 32_768 + along[i % TILE] + down[Math.floor(i / TILE)]
+          data[4 * i] = value / 256
+          data[4 * i + 1] = value % 256
+          data[4 * i + 2] = (value % 1) * 256
+          data[4 * i + 3] = 255
         }
         return Promise.resolve({ width: TILE, height: TILE, data })
       }

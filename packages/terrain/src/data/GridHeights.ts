@@ -245,11 +245,14 @@ export class GridHeights implements PageSource {
     const insideY = MathUtils.clamp(y, 0, height)
     const isInside = insideX === x && insideY === y
     const isFlat = this.#isFlat
-    const parallel = isFlat ? 1 : this.#radii.x * Math.cos(this.#north - y * this.#stepY)
-    const wide = this.#stepX * parallel
     const tall = this.#stepY * (isFlat ? 1 : this.#radii.x)
-    const distance = isInside ? 0 : Math.hypot((x - insideX) * wide, (y - insideY) * tall)
-    if (distance >= this.#fade) {
+    const down = (y - insideY) * tall
+    const isFar = Math.abs(down) >= this.#fade
+    const parallel =
+      isFlat || isInside || isFar ? 1 : this.#radii.x * Math.cos(this.#north - y * this.#stepY)
+    const wide = this.#stepX * parallel
+    const distance = isInside ? 0 : Math.hypot((x - insideX) * wide, down)
+    if (isFar || distance >= this.#fade) {
       target.value = this.#outside
       target.x = target.y = 0
       return target

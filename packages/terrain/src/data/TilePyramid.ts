@@ -1,4 +1,5 @@
 import { tileKey } from './mercator'
+import type { PagePlaces } from './pagePlaces'
 import { sampleRaster, valueInside, type RasterSample } from './RasterSampler'
 
 /** Heights of a tile, row by row from its north-west corner [m]; NaN where there is none. */
@@ -54,21 +55,30 @@ export class TilePyramid {
     return target
   }
 
-  /** Height alone, as of `sample`. */
-  valueAt(z: number, x: number, y: number, find: FindTile): number {
+  /** Heights alone at places, as of `sample`. */
+  fill(z: number, { x, y }: PagePlaces, find: FindTile, heights: Float32Array): void {
     const { size } = this
-    if (find !== this.#find) this.#lastZ = -1
-    this.#find = find
     const scale = size * 2 ** z
-    const column = x * this.wide * scale - 0.5
-    const row = y * scale - 0.5
-    const left = column - Math.floor(column / size) * size
-    const top = row - Math.floor(row / size) * size
-    if (left >= 1 && top >= 1 && left < size - 2 && top < size - 2) {
-      const tile = this.#tileAt(z, column, row)
-      if (tile?.hasHoles === false) return valueInside(tile.heights, size, left, top)
+    const wide = this.wide * scale
+    /** Place and heights of the tile at hand; null if it has holes, or is not there. */
+    let [left, top] = [NaN, NaN]
+    let inside: Float32Array | null = null
+    for (let i = 0; i < heights.length; i++) {
+      const column = x[i] * wide - 0.5
+      const row = y[i] * scale - 0.5
+      if (!(column >= left && row >= top && column < left + size && row < top + size)) {
+        left = Math.floor(column / size) * size
+        top = Math.floor(row / size) * size
+        const tile = find(tileKey(z, left / size, top / size, this.wide))
+        inside = tile?.hasHoles === false ? tile.heights : null
+      }
+      const [across, down] = [column - left, row - top]
+      const isInside = across >= 1 && down >= 1 && across < size - 2 && down < size - 2
+      heights[i] =
+        isInside && inside !== null
+          ? valueInside(inside, size, across, down)
+          : this.sample(z, x[i], y[i], find, scratch).value
     }
-    return this.sample(z, x, y, find, scratch).value
   }
 
   /** Forgets the tile that was found last. */

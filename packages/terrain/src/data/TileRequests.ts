@@ -28,6 +28,28 @@ interface Request<T> {
   timer?: ReturnType<typeof setTimeout>
 }
 
+/** What to do when a signal is aborted; it has a listener while there is anything. */
+class Leaving extends Set<() => void> {
+  readonly #signal: AbortSignal
+  readonly #leave = (): void => this.forEach(leave => leave())
+
+  constructor(signal: AbortSignal) {
+    super()
+    this.#signal = signal
+  }
+
+  override add(leave: () => void): this {
+    if (this.size === 0) this.#signal.addEventListener('abort', this.#leave)
+    return super.add(leave)
+  }
+
+  override delete(leave: () => void): boolean {
+    const isThere = super.delete(leave)
+    if (this.size === 0) this.#signal.removeEventListener('abort', this.#leave)
+    return isThere
+  }
+}
+
 /**
  * Queue of loads: the lowest priority number first, and of equal ones the newest, so that a fast flight gets what it sees
  * now. A key is loaded once for all who wait for it, and given up when the last of them does.
@@ -36,6 +58,8 @@ export class TileRequests<T> {
   readonly #load: (key: number, signal: AbortSignal) => Promise<T>
   readonly #options: TileRequestsOptions
   readonly #requests = new Map<number, Request<T>>()
+  /** What to do when a signal is aborted: a page waits for many tiles with one signal, which gets one listener. */
+  readonly #leaving = new WeakMap<AbortSignal, Leaving>()
   #loading = 0
   #calls = 0
 
@@ -68,9 +92,11 @@ export class TileRequests<T> {
       const request = this.#requestOf(key)
       request.priority = Math.min(request.priority, priority)
       request.order = ++this.#calls
+      const leaving = this.#leaving.get(signal) ?? new Leaving(signal)
+      this.#leaving.set(signal, leaving)
       const forget = (): void => {
         request.waiters.delete(waiter)
-        signal.removeEventListener('abort', leave)
+        leaving.delete(leave)
       }
       const leave = (): void => {
         forget()
@@ -88,7 +114,7 @@ export class TileRequests<T> {
         }
       }
       request.waiters.add(waiter)
-      signal.addEventListener('abort', leave)
+      leaving.add(leave)
       this.#fill()
     })
   }

@@ -155,8 +155,12 @@ export class HeightPages {
     const { lowest, highest } = this.#source
     const spacing = spacingOf(tile, this.#baker.figure, this.atlas.surfaceSide - 1)
     const margin = this.#source.variation(MARGIN_STEPS * spacing)
-    const least = Math.min(...heights)
-    const most = Math.max(...heights)
+    let [least, most] = [Infinity, -Infinity]
+    for (let i = 0; i < heights.length; i++) {
+      const height = heights[i]
+      if (height < least) least = height
+      if (height > most) most = height
+    }
     tile.lowest = Math.min(Math.max(least - margin, lowest), least)
     tile.highest = Math.max(Math.min(most + margin, highest), most)
   }

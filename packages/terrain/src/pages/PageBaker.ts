@@ -1,4 +1,4 @@
-import { DataTexture, FloatType, NearestFilter, RedFormat } from 'three'
+import { DataArrayTexture, DataTexture, FloatType, NearestFilter, RedFormat } from 'three'
 import { uniform } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
@@ -20,6 +20,9 @@ import {
   type PageUniforms
 } from './tsl/pageOutput'
 
+/** Pages of loaded heights that are drawn at once. */
+const MOST_LOADED = 16
+
 /** Largest step between heights of a page with so many steps along an edge [m]. */
 export const spacingOf = ({ extent }: Tile, { maximumRadius }: Figure, steps: number): number =>
   (2 * extent * maximumRadius) / steps
@@ -31,8 +34,8 @@ export class PageBaker {
   readonly #resolution: number
   /** Read-back of heights to the CPU; null if nobody asks for them. */
   readonly #readback: HeightReadback | null
-  /** Heights that were loaded, of one page; null if they come from a function. */
-  readonly #loaded: DataTexture | null = null
+  /** Heights that were loaded, a page to a layer; null if they come from a function. */
+  readonly #loaded: DataArrayTexture | null = null
   /** Colours of one page, and what draws them; null without pictures. */
   readonly #image: { texture: DataTexture; quads: PageQuads } | null = null
 
@@ -60,12 +63,16 @@ export class PageBaker {
       this.#image = { texture, quads: images }
     }
     if (isPageSource(source)) {
-      const texture = new DataTexture(new Float32Array(side ** 2), side, side, RedFormat, FloatType)
+      const heightsOfPages = new Float32Array(MOST_LOADED * side ** 2)
+      const texture = new DataArrayTexture(heightsOfPages, side, side, MOST_LOADED)
       texture.name = 'Welkin.Terrain.loaded'
+      texture.format = RedFormat
+      texture.type = FloatType
       texture.minFilter = texture.magFilter = NearestFilter
       this.#loaded = texture
-      quads.addPass('heights', loadedHeightsOf(texture, tile, heightSide, density), heights)
-      quads.addPass('surface', loadedSurfaceOf(texture, tile, surfaceSide, density), surface)
+      const loaded = { texture, layer: quads.row }
+      quads.addPass('heights', loadedHeightsOf(loaded, tile, heightSide, density), heights)
+      quads.addPass('surface', loadedSurfaceOf(loaded, tile, surfaceSide, density), surface)
     } else {
       quads.addPass('heights', heightsOf(source, tile, heightSide), heights)
       quads.addPass('surface', surfaceOf(source, tile, surfaceSide, density), surface)
@@ -98,18 +105,20 @@ export class PageBaker {
   }
 
   /**
-   * Draws a page by the next {@link flush}, or at once if its heights were loaded; the renderer is left as it was.
+   * Draws a page by the next {@link flush}; the renderer is left as it was.
    *
    * @param heights - Loaded heights, as many as `request` asked for; null for a source that is a function.
    */
   bake(renderer: Renderer, tile: Tile, slot: number, heights: Float32Array | null = null): void {
+    const row = this.#quads.count
     this.#quads.add(tile, slot, 2 * spacingOf(tile, this.figure, this.#resolution))
     this.#readback?.add(tile)
     if (this.#loaded !== null && heights !== null) {
-      ;(this.#loaded.image.data as Float32Array).set(heights)
+      ;(this.#loaded.image.data as Float32Array).set(heights, row * heights.length)
+      this.#loaded.addLayerUpdate(row)
       this.#loaded.needsUpdate = true
-      this.flush(renderer)
-    } else if (this.#quads.isFull) this.flush(renderer)
+    }
+    if (row + 1 === (this.#loaded === null ? MOST : MOST_LOADED)) this.flush(renderer)
   }
 
   /** Draws the pages that wait; with a read-back their tiles have the heights some frames later. */

@@ -44,6 +44,9 @@ export class PageQuads {
   readonly #place: Vec2
   #count = 0
 
+  /** Number of a pixel's page in the drawing. */
+  readonly row = flat('pageSlot').z
+
   /** Tile of a pixel's page. */
   readonly tile: Omit<PageUniforms, 'radii' | 'figure' | 'seed'>
 
@@ -51,7 +54,7 @@ export class PageQuads {
     this.#columns = columns
     const corner = attribute<'vec4'>('pageSlot', 'vec4').xy.add(positionGeometry.xy)
     this.#place = corner.div(vec2(columns, capacity / columns))
-    const [cube, center, reference] = ATTRIBUTES.map(flat)
+    const [cube, center, reference] = ATTRIBUTES.slice(0, 3).map(flat)
     this.tile = {
       cube: cube.xyz,
       face: cube.w,
@@ -98,9 +101,9 @@ export class PageQuads {
     this.#meshes.push({ mesh, target })
   }
 
-  /** True if no other page has room in this drawing. */
-  get isFull(): boolean {
-    return this.#count === MOST
+  /** Number of pages in the next drawing. */
+  get count(): number {
+    return this.#count
   }
 
   /**

@@ -1,5 +1,5 @@
-import { Fn, float, ivec2, texture, uv, vec2, vec4 } from 'three/tsl'
-import type { Texture } from 'three'
+import { Fn, float, int, ivec2, texture, uv, vec2, vec4 } from 'three/tsl'
+import type { DataArrayTexture, Texture } from 'three'
 import type { HeightSource, SurfacePoint } from '../../heights/HeightSource'
 import { heightAndSky } from './skyShare'
 import { packed } from './packing'
@@ -117,13 +117,22 @@ export const imageOf = (image: Texture, side: number): Vec4 =>
     )
   )()
 
-/** Heights that were loaded, a step beyond each edge too. */
-const loaded = (heights: Texture, texel: Vec2): Float =>
-  (texture(heights) as unknown as { load(at: unknown): Vec4 }).load(ivec2(texel as never)).x
+/** Heights that were loaded, of some pages, a step beyond each edge too: a texture, and a page's layer in it. */
+export interface LoadedPages {
+  readonly texture: DataArrayTexture
+  readonly layer: Float
+}
+
+const loaded = ({ texture: heights, layer }: LoadedPages, texel: Vec2): Float => {
+  const node = texture(heights) as unknown as {
+    load(at: unknown): { depth(layer: unknown): Vec4 }
+  }
+  return node.load(ivec2(texel as never)).depth(int(layer.add(0.5))).x
+}
 
 /** Height and climate of a vertex, from heights that were loaded: all of the sky is seen. */
 export const loadedHeightsOf = (
-  heights: Texture,
+  heights: LoadedPages,
   tile: PageUniforms,
   side: number,
   density: number
@@ -141,7 +150,7 @@ export const loadedHeightsOf = (
 
 /** Gradient by central differences, height and patchiness for pixels, from heights that were loaded. */
 export const loadedSurfaceOf = (
-  heights: Texture,
+  heights: LoadedPages,
   tile: PageUniforms,
   side: number,
   density: number
