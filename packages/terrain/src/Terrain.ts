@@ -21,6 +21,7 @@ import { raycastGround } from './rays/raycastGround'
 import type { GroundMaps } from './surface/maps/GroundMaps'
 import type { GroundMask } from './surface/maps/GroundMask'
 import { SeaMesh } from './surface/SeaMesh'
+import type { GroundDetail } from './surface/tsl/grain'
 import { terrainMaterial } from './surface/terrainMaterial'
 import {
   checkFixed,
@@ -34,13 +35,14 @@ import { TerrainUniforms } from './TerrainUniforms'
 import type { TerrainHorizon } from './tiles/TerrainHorizon'
 import { figureOf, isFlat, poleOf, worldToGround, type Figure } from './tiles/cpu/figure'
 import { viewerOf } from './tiles/cpu/viewer'
+import { farTiles, instanceCount, isShadowPass, takeFar } from './tiles/FarTiles'
+import type { DrawnTiles, FarTiles } from './tiles/FarTiles'
 import { tileGrid } from './tiles/tileGrid'
 import { ellipsoidInShader, planeInShader } from './tiles/tsl/figure'
 import { writeTiles } from './tiles/writeTiles'
 
 /** Least height of the viewer above the ground in the choice of tiles [m]. */
 const LEAST_CLEARANCE = 0.5
-
 /** Depth of skirts where no page is missing [cells]: only rounding is hidden. With their width they slope by 68°, more than procedural ground does. */
 const SHALLOW = 1
 
@@ -90,6 +92,9 @@ export class Terrain extends SeaMesh {
   readonly #uniforms: TerrainUniforms
   readonly #tiles: PagedTiles
   readonly #grain: Texture
+  /** Tiles with materials of less code, the farthest first, and the other ones. */
+  readonly #far: readonly FarTiles[]
+  #near: DrawnTiles = { tiles: [], inView: 0 }
   #shadowDistance = 0
   #camera: Camera | null = null
 
@@ -107,15 +112,12 @@ export class Terrain extends SeaMesh {
     const uniforms = new TerrainUniforms(figure)
     const tiles = new PagedTiles(source, figure, all)
     const grain = grainTexture()
-    const material = terrainMaterial(
-      atmosphere,
-      tiles.pages.atlas,
-      grain,
-      uniforms,
-      isFlat(figure) ? planeInShader : ellipsoidInShader,
-      all
-    )
-    super(tileGrid(all.resolution, CAPACITY), material, uniforms)
+    const inShader = isFlat(figure) ? planeInShader : ellipsoidInShader
+    const grid = () => tileGrid(all.resolution, CAPACITY)
+    const materialOf = (code: GroundDetail) =>
+      terrainMaterial(atmosphere, tiles.pages.atlas, grain, uniforms, inShader, all, code)
+    super(grid(), materialOf(2), uniforms)
+    this.#far = farTiles(this, grid, materialOf)
     this.#figure = figure
     this.#uniforms = uniforms
     this.#tiles = tiles
@@ -248,8 +250,7 @@ export class Terrain extends SeaMesh {
   }
 
   /**
-   * Chooses tiles for a camera and draws pages that are missing. Drawing the terrain does this by itself; call it for a full
-   * picture at once:
+   * Chooses tiles for a camera and draws missing pages. Drawing the terrain does this by itself; call it for a full picture at once:
    *
    * ```ts
    * terrain.update(renderer, camera, Infinity)
@@ -290,7 +291,12 @@ export class Terrain extends SeaMesh {
     this.#uniforms.referenceECEF(reference)
     this.maps?.update(renderer)
     this.mask?.update(figure, reference)
-    writeTiles(this.geometry, selection.tiles, positionECEF, reference, ground, tree.ranges)
+    this.#near = takeFar(this.#far, selection, renderer, viewer)
+    for (const { geometry, drawn } of [
+      ...this.#far,
+      { geometry: this.geometry, drawn: this.#near }
+    ])
+      writeTiles(geometry, drawn.tiles, positionECEF, reference, ground, tree.ranges)
     // The ground's axes at the camera.
     matrix.copy(fromWorld).invert().decompose(subpoint, quaternion, scale)
     this.matrixWorld.compose(positionWorld, quaternion, scale)
@@ -299,12 +305,9 @@ export class Terrain extends SeaMesh {
 
   /** Chooses tiles before three draws them; shadow maps are drawn with those of the viewer, out of view too. */
   override onBeforeRender(renderer: unknown, scene: Scene, camera: Camera): void {
-    const pass = scene.overrideMaterial as { isShadowPassMaterial?: boolean } | null
-    const isShadow = pass?.isShadowPassMaterial === true
-    if (!isShadow && (this.#camera === null || camera === this.#camera))
+    if (!isShadowPass(scene) && (this.#camera === null || camera === this.#camera))
       this.update(renderer as Renderer, camera)
-    const { chosen, inView } = this.tileCount
-    this.geometry.instanceCount = isShadow ? chosen : inView
+    this.geometry.instanceCount = instanceCount(this.#near, scene)
   }
 
   /**
@@ -342,5 +345,6 @@ export class Terrain extends SeaMesh {
     this.#grain.dispose()
     this.geometry.dispose()
     this.material.dispose()
+    for (const far of this.#far) far.dispose()
   }
 }

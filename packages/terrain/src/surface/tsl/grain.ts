@@ -1,21 +1,22 @@
 import { Fn, If, dFdx, dFdy, float, mat4, smoothstep, vec3, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
-import { GRAIN_SLOPE } from '../grainTexture'
-import { frameNear, pieceOf, tilingVertices } from './stochasticTiling'
+import { GRAIN_ANISOTROPY, GRAIN_SLOPE } from '../grainTexture'
+import { LONGEST_KEPT } from './seaSurface'
+import { alongFrame, frameNear, pieceOf, tilingVertices } from './stochasticTiling'
 
-/** Sides of the picture on the ground [m], and longer side of a pixel's footprint at which nothing is left [m]. */
+/** Sides of the picture on the ground [m], and size of what a pixel shows at which nothing is left [m]. */
 const COARSE = { side: 17, gone: 1 }
 const FINE = { side: 2.1, gone: 0.14 }
 
-/** Crowns and outcrops, where single stones are too small to be seen: footprints between which they come, and go [m]. */
-const CANOPY = { side: 150, from: 0.35, to: 0.8, fades: 5, gone: 10 }
+/**
+ * Crowns and outcrops, where single stones are too small to be seen: shorter sides of a pixel's footprint between which they come, and longer ones between
+ * which they go [m]. By the longer ones: at eye height they lie on the meadow from 40 m on, as flat spots (*Terrain*, still grass).
+ */
+const CANOPY = { side: 150, from: 0.2, to: 0.45, fades: 5, gone: 10 }
 
 /** Footprint at which the slopes of all stones are smaller than a pixel [m]. */
 const LOST = 0.075
-
-/** Least size of what a picture's level shows, to the longer side of a pixel. */
-const LEAST_SIZE = 0.6
 
 /** Cells of the lattice in 256 m that pieces of stones and grass are moved by, and those of crowns. */
 const CELLS = 36
@@ -23,6 +24,12 @@ const CANOPY_CELLS = 3
 
 /** Part of `gone` at which a picture begins to go. */
 const FADE = 0.5
+
+/** Code that a material of the ground has: with stones and blades (2), with crowns, outcrops and waves alone (1), or with none of these (0). */
+export type GroundDetail = 0 | 1 | 2
+
+/** Least side of pixels on the ground that each is for: beyond it the others show the same [m]. */
+export const LEAST_FOOTPRINTS = [Math.max(CANOPY.gone, LONGEST_KEPT), COARSE.gone, 0] as const
 
 /** Place in a face's plane, and the ground there. */
 export interface GrainPlace {
@@ -61,20 +68,21 @@ type Variable = Vec4 & { addAssign(value: Vec4): void }
 type Slope = Vec3 & { assign(value: Vec3): void }
 
 /** Stones and grass from 3 m to 1 cm, and crowns from afar; 0 where they are smaller than pixels. */
-export function grainAt(place: GrainPlace): Grain {
+export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
   const { grain, offset, first, normal } = place
   // Derivatives are taken out of branches.
   const across = dFdx(offset).toConst() as Vec3
   const along = dFdy(offset).toConst() as Vec3
   const [width, height] = [across.length().toConst(), along.length().toConst()] as Float[]
   const footprint = width.max(height).toConst() as Float
-  // Between both sides of a pixel, nearer to the longer one where it is much longer: one look-up a picture, of little blur and little shimmer.
-  const size = width.mul(height).sqrt().max(footprint.mul(LEAST_SIZE))
+  const shorter = across.cross(along).length().div(footprint.max(1e-9)).toConst() as Float
+  // Of a pixel that shows a long strip of the ground several places are read along it.
+  const size = shorter.max(footprint.div(GRAIN_ANISOTROPY)).toConst() as Float
   const share = ({ gone }: typeof FINE): Float =>
-    float(1).sub(footprint.div(gone)).div(FADE).min(1).toConst()
+    float(1).sub(size.div(gone)).div(FADE).min(1).toConst()
   const near = share(FINE)
   const far = share(COARSE)
-  const canopy = smoothstep(CANOPY.from, CANOPY.to, footprint)
+  const canopy = smoothstep(CANOPY.from, CANOPY.to, shorter)
     .mul(smoothstep(CANOPY.fades, CANOPY.gone, footprint).oneMinus())
     .toConst() as Float
   // Several vectors in one value: what the branches of both need is found once, and none of it far away.
@@ -85,10 +93,9 @@ export function grainAt(place: GrainPlace): Grain {
     const coarseSlope = vec3(0).toVar() as unknown as Slope
     const crowns = vec4(0).toVar() as unknown as Variable
     const crownSlope = vec3(0).toVar() as unknown as Slope
-    // Seen from afar there are none of them.
-    If(footprint.lessThan(CANOPY.gone), () => {
-      const logSize = size.max(1e-6).log2().toConst() as Float
-      const frame = { ...frameNear(normal, place.up, first), logSize }
+    const find = (): void => {
+      const axes = frameNear(normal, place.up, first)
+      const frame = { ...axes, across: alongFrame(axes, across), along: alongFrame(axes, along) }
       const inSpace = ({ x, y }: Vec4): Vec3 =>
         frame.tangent.mul(x).add(frame.bitangent.mul(y)).mul(GRAIN_SLOPE)
       If(canopy.greaterThan(0), () => {
@@ -98,6 +105,7 @@ export function grainAt(place: GrainPlace): Grain {
         })
         crownSlope.assign(inSpace(crowns))
       })
+      if (detail < 2) return
       If(far.greaterThan(0), () => {
         tilingVertices(place.reference, offset, CELLS).each(({ away, random }, share) => {
           const boulders = pieceOf(grain, frame, COARSE.side, away, random.xy)
@@ -110,7 +118,9 @@ export function grainAt(place: GrainPlace): Grain {
         fineSlope.assign(inSpace(fine))
         coarseSlope.assign(inSpace(coarse))
       })
-    })
+    }
+    // Seen from afar there are none of them.
+    if (detail > 0) If(footprint.lessThan(CANOPY.gone), find)
     return mat4(
       vec4(fineSlope, fine.z),
       vec4(coarseSlope, coarse.z),

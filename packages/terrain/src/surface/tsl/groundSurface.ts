@@ -1,7 +1,7 @@
 import { Fn, If, float, mix, smoothstep, vec3 } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 import type { GroundMaps } from '../maps/GroundMaps'
-import { grainAt } from './grain'
+import { grainAt, type GroundDetail } from './grain'
 import type { MappedGround } from './mappedGround'
 import {
   groundClimate,
@@ -16,6 +16,9 @@ const DRY_GRASS = 1.5
 
 /** Slopes of sand over those of stones [–]. 0.05: a beach is of flat shards (*Terrain*, still shore). */
 const SAND_BUMP = 0.02
+
+/** Slope that no crown exceeds [–]. */
+const STEEPEST_CROWN = 0.4
 
 /** Mean square of the slopes of stones. */
 const GRAIN_VARIANCE = 0.3
@@ -72,12 +75,13 @@ export interface OwnSurface {
 export function groundSurface(
   place: GroundPlace,
   seaLevel: Float,
-  { maps, paint }: OwnSurface
+  { maps, paint }: OwnSurface,
+  detail: GroundDetail
 ): GroundSurface {
   const { patch, climate } = place
   const ground = groundClimate(place, seaLevel)
   const { overSea, overTrees, sunny, lowland } = ground
-  const grain = grainAt(place)
+  const grain = grainAt(place, detail)
   const { stone, blade, boulder, tuft, crown, brush } = grain
   const rules = groundRules(place, grain, ground)
   const { relief, spread } = rules
@@ -164,7 +168,7 @@ export function groundSurface(
   const occlusion = hollow.mul(0.9).add(1).max(0.3)
   const slopes = grain
     .gradient(bump, bump.mul(bareness.max(bare).mul(0.6)))
-    .add(grain.canopySlope.mul(raised))
+    .add(leaning(grain.canopySlope.mul(raised)))
   return {
     tangle,
     detail: mix(light.mul(0.8), stone.mul(0.45), bareness.max(bare)).add(1),
@@ -175,6 +179,21 @@ export function groundSurface(
     grain: mapped === undefined ? slopes : slopes.add(mapped.slope.mul(mapped.share)),
     occlusion: either(occlusion, ground => ground.occlusion)
   }
+}
+
+/**
+ * Slopes of crowns, no more than {@link STEEPEST_CROWN}: leaves let light through to the shaded side. As steep as they are: crowns that stand alone are black
+ * wedges with edges like a saw, and crests are dotted (*Terrain*, stills grass and scree).
+ */
+function leaning(slope: Vec3): Vec3 {
+  const most = STEEPEST_CROWN
+  return slope.mul(
+    slope
+      .dot(slope)
+      .div(most * most)
+      .add(1)
+      .inverseSqrt()
+  )
 }
 
 /**

@@ -1,0 +1,150 @@
+import { Mesh, Vector2, Vector3 } from 'three'
+import type { InstancedBufferGeometry, Scene } from 'three'
+import type { MeshStandardNodeMaterial, Renderer } from 'three/webgpu'
+import { LEAST_FOOTPRINTS, type GroundDetail } from '../surface/tsl/grain'
+import type { Viewer } from './cpu/viewer'
+import type { Tile } from './Tile'
+import type { TileSelection } from './TileTree'
+
+type TileMesh = Mesh<InstancedBufferGeometry, MeshStandardNodeMaterial>
+
+/** Tiles to draw, those in view first, and the number of these. */
+export type DrawnTiles = Pick<TileSelection, 'tiles' | 'inView'>
+
+/** Properties that tiles far away have in common with their terrain. */
+const SHARED = ['castShadow', 'receiveShadow', 'renderOrder', 'layers'] as const
+
+const point = new Vector3()
+const size = new Vector2()
+
+/** True of three's drawing of shadow maps. */
+export const isShadowPass = ({ overrideMaterial }: Scene): boolean =>
+  (overrideMaterial as { isShadowPassMaterial?: boolean } | null)?.isShadowPassMaterial === true
+
+/** Number of tiles to draw: shadow maps are drawn with those out of view, too. */
+export const instanceCount = ({ tiles, inView }: DrawnTiles, scene: Scene): number =>
+  isShadowPass(scene) ? tiles.length : inView
+
+/**
+ * Least side of what a pixel shows of a tile, at most steep ground of a half; 0 where that is not known [m].
+ *
+ * A way δ along the ground at a distance d, at an angle θ to the middle of the view, is at most δ f / (d cos² θ) in the picture, with f the focal length.
+ *
+ * @param pixel - Height of a pixel over the focal length [–].
+ */
+export function leastFootprint(
+  { center, normal, radius, lowest, highest }: Tile,
+  { position, forward, seaLevel }: Viewer,
+  pixel: number
+): number {
+  const low = Math.max(lowest, seaLevel)
+  const high = Math.max(highest, seaLevel)
+  point
+    .copy(center)
+    .addScaledVector(normal, (low + high) / 2)
+    .sub(position)
+  const distance = point.length()
+  const spread = Math.hypot(radius, Math.min(high - low, radius) / 2)
+  if (spread >= distance) return 0
+  const cosine = point.dot(forward) / distance
+  const sine = Math.sqrt(Math.max(1 - cosine ** 2, 0))
+  const part = spread / distance
+  const least = cosine * Math.sqrt(1 - part ** 2) - sine * part
+  return least > 0 ? (distance - spread) * least ** 2 * pixel : 0
+}
+
+/**
+ * Tiles of a terrain so far away that a material of less code shows the same; they are drawn after the others.
+ *
+ * Once somebody has changed the terrain's material there are none: all tiles are then drawn with that.
+ */
+export class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMaterial> {
+  drawn: DrawnTiles = { tiles: [], inView: 0 }
+  readonly #terrain: TileMesh
+  readonly #material: MeshStandardNodeMaterial
+  /** Properties of the terrain's material, as they were at first. */
+  readonly #properties: [string, unknown][]
+
+  /** @param footprint - Side of pixels on the ground from which on its material shows the same [m]. */
+  constructor(
+    terrain: TileMesh,
+    geometry: InstancedBufferGeometry,
+    material: MeshStandardNodeMaterial,
+    readonly footprint: number
+  ) {
+    super(geometry, material)
+    this.#terrain = terrain
+    this.#material = terrain.material
+    this.#properties = Object.entries(terrain.material).filter(([name]) => name !== 'version')
+    this.name = 'Terrain.far'
+    this.frustumCulled = false
+    this.matrixAutoUpdate = this.matrixWorldAutoUpdate = false
+    this.matrixWorld = terrain.matrixWorld
+    for (const name of SHARED) {
+      Object.defineProperty(this, name, { get: () => terrain[name], set: () => undefined })
+    }
+    terrain.add(this)
+  }
+
+  /**
+   * Takes the tiles that are far away.
+   *
+   * @returns The other ones.
+   */
+  take({ tiles, inView }: DrawnTiles, renderer: Renderer, viewer: Viewer): DrawnTiles {
+    const { material } = this.#terrain
+    const isUntouched =
+      material === this.#material &&
+      this.#properties.every(([name, value]) => (material as never)[name] === value)
+    const height = renderer.getRenderTarget()?.height ?? renderer.getDrawingBufferSize(size).y
+    const pixel = isUntouched ? viewer.pictureHeight / height : 0
+    const far = { tiles: [] as Tile[], inView: 0 }
+    const near = { tiles: [] as Tile[], inView: 0 }
+    for (const [i, tile] of tiles.entries()) {
+      const part = leastFootprint(tile, viewer, pixel) > this.footprint ? far : near
+      part.tiles.push(tile)
+      if (i < inView) part.inView++
+    }
+    this.drawn = far
+    return near
+  }
+
+  override onBeforeRender(_: unknown, scene: Scene): void {
+    this.geometry.instanceCount = instanceCount(this.drawn, scene)
+  }
+
+  /** The terrain itself finds hits of rays. */
+  override raycast(): void {}
+
+  override dispose(): void {
+    super.dispose()
+    this.geometry.dispose()
+    this.material.dispose()
+  }
+}
+
+/** Meshes for tiles far away, the farthest first. */
+export const farTiles = (
+  terrain: TileMesh,
+  grid: () => InstancedBufferGeometry,
+  materialOf: (code: GroundDetail) => MeshStandardNodeMaterial
+): FarTiles[] =>
+  ([0, 1] as const).map(
+    code => new FarTiles(terrain, grid(), materialOf(code), LEAST_FOOTPRINTS[code])
+  )
+
+/**
+ * Has tiles far away drawn by their meshes.
+ *
+ * @returns The other ones.
+ */
+export function takeFar(
+  meshes: readonly FarTiles[],
+  selection: DrawnTiles,
+  renderer: Renderer,
+  viewer: Viewer
+): DrawnTiles {
+  let left = selection
+  for (const mesh of meshes) left = mesh.take(left, renderer, viewer)
+  return left
+}
