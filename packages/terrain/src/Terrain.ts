@@ -35,7 +35,7 @@ import { TerrainUniforms } from './TerrainUniforms'
 import type { TerrainHorizon } from './tiles/TerrainHorizon'
 import { figureOf, isFlat, poleOf, worldToGround, type Figure } from './tiles/cpu/figure'
 import { viewerOf } from './tiles/cpu/viewer'
-import { farTiles, instanceCount, isShadowPass, takeFar } from './tiles/FarTiles'
+import { farTiles, isShadowPass, takeFar } from './tiles/FarTiles'
 import type { DrawnTiles, FarTiles } from './tiles/FarTiles'
 import { tileGrid } from './tiles/tileGrid'
 import { ellipsoidInShader, planeInShader } from './tiles/tsl/figure'
@@ -92,9 +92,9 @@ export class Terrain extends SeaMesh {
   readonly #uniforms: TerrainUniforms
   readonly #tiles: PagedTiles
   readonly #grain: Texture
-  /** Tiles with materials of less code, the farthest first, and the other ones. */
+  /** Tiles with materials of less code, the farthest first. */
   readonly #far: readonly FarTiles[]
-  #near: DrawnTiles = { tiles: [], inView: 0 }
+  #drawn: DrawnTiles = { tiles: [], inView: 0 }
   #shadowDistance = 0
   #camera: Camera | null = null
 
@@ -291,12 +291,10 @@ export class Terrain extends SeaMesh {
     this.#uniforms.referenceECEF(reference)
     this.maps?.update(renderer)
     this.mask?.update(figure, reference)
-    this.#near = takeFar(this.#far, selection, renderer, viewer)
-    for (const { geometry, drawn } of [
-      ...this.#far,
-      { geometry: this.geometry, drawn: this.#near }
-    ])
-      writeTiles(geometry, drawn.tiles, positionECEF, reference, ground, tree.ranges)
+    this.#drawn = takeFar(this.#far, selection, renderer, viewer)
+    const own = { geometry: this.geometry, tiles: this.#drawn.tiles }
+    for (const { geometry, tiles } of [own, ...this.#far])
+      writeTiles(geometry, tiles, positionECEF, reference, ground, tree.ranges)
     // The ground's axes at the camera.
     matrix.copy(fromWorld).invert().decompose(subpoint, quaternion, scale)
     this.matrixWorld.compose(positionWorld, quaternion, scale)
@@ -305,9 +303,11 @@ export class Terrain extends SeaMesh {
 
   /** Chooses tiles before three draws them; shadow maps are drawn with those of the viewer, out of view too. */
   override onBeforeRender(renderer: unknown, scene: Scene, camera: Camera): void {
-    if (!isShadowPass(scene) && (this.#camera === null || camera === this.#camera))
+    const isShadow = isShadowPass(scene)
+    if (!isShadow && (this.#camera === null || camera === this.#camera))
       this.update(renderer as Renderer, camera)
-    this.geometry.instanceCount = instanceCount(this.#near, scene)
+    const { tiles, inView } = this.#drawn
+    this.geometry.instanceCount = isShadow ? tiles.length : inView
   }
 
   /**

@@ -12,7 +12,7 @@ type TileMesh = Mesh<InstancedBufferGeometry, MeshStandardNodeMaterial>
 export type DrawnTiles = Pick<TileSelection, 'tiles' | 'inView'>
 
 /** Properties that tiles far away have in common with their terrain. */
-const SHARED = ['castShadow', 'receiveShadow', 'renderOrder', 'layers'] as const
+const SHARED = ['receiveShadow', 'renderOrder', 'layers'] as const
 
 const point = new Vector3()
 const size = new Vector2()
@@ -20,10 +20,6 @@ const size = new Vector2()
 /** True of three's drawing of shadow maps. */
 export const isShadowPass = ({ overrideMaterial }: Scene): boolean =>
   (overrideMaterial as { isShadowPassMaterial?: boolean } | null)?.isShadowPassMaterial === true
-
-/** Number of tiles to draw: shadow maps are drawn with those out of view, too. */
-export const instanceCount = ({ tiles, inView }: DrawnTiles, scene: Scene): number =>
-  isShadowPass(scene) ? tiles.length : inView
 
 /**
  * Least side of what a pixel shows of a tile, at most steep ground of a half; 0 where that is not known [m].
@@ -54,12 +50,12 @@ export function leastFootprint(
 }
 
 /**
- * Tiles of a terrain so far away that a material of less code shows the same; they are drawn after the others.
+ * Tiles in view so far away that a material of less code shows the same; they are drawn after the others. Shadow maps are drawn by the terrain itself.
  *
  * Once somebody has changed the terrain's material there are none: all tiles are then drawn with that.
  */
 export class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMaterial> {
-  drawn: DrawnTiles = { tiles: [], inView: 0 }
+  tiles: readonly Tile[] = []
   readonly #terrain: TileMesh
   readonly #material: MeshStandardNodeMaterial
   /** Properties of the terrain's material, as they were at first. */
@@ -89,28 +85,24 @@ export class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMate
   /**
    * Takes the tiles that are far away.
    *
+   * @param tiles - In view.
    * @returns The other ones.
    */
-  take({ tiles, inView }: DrawnTiles, renderer: Renderer, viewer: Viewer): DrawnTiles {
-    const { material } = this.#terrain
+  take(tiles: readonly Tile[], renderer: Renderer, viewer: Viewer): Tile[] {
+    const terrain = this.#terrain
+    const { material } = terrain
     const isUntouched =
+      this.parent === terrain &&
       material === this.#material &&
       this.#properties.every(([name, value]) => (material as never)[name] === value)
     const height = renderer.getRenderTarget()?.height ?? renderer.getDrawingBufferSize(size).y
     const pixel = isUntouched ? viewer.pictureHeight / height : 0
-    const far = { tiles: [] as Tile[], inView: 0 }
-    const near = { tiles: [] as Tile[], inView: 0 }
-    for (const [i, tile] of tiles.entries()) {
-      const part = leastFootprint(tile, viewer, pixel) > this.footprint ? far : near
-      part.tiles.push(tile)
-      if (i < inView) part.inView++
-    }
-    this.drawn = far
-    return near
-  }
-
-  override onBeforeRender(_: unknown, scene: Scene): void {
-    this.geometry.instanceCount = instanceCount(this.drawn, scene)
+    const isFar = (tile: Tile): boolean => leastFootprint(tile, viewer, pixel) > this.footprint
+    const parts = [[], []] as Tile[][]
+    for (const tile of tiles) parts[Number(isFar(tile))].push(tile)
+    this.tiles = parts[1]
+    this.geometry.instanceCount = this.tiles.length
+    return parts[0]
   }
 
   /** The terrain itself finds hits of rays. */
@@ -136,15 +128,16 @@ export const farTiles = (
 /**
  * Has tiles far away drawn by their meshes.
  *
- * @returns The other ones.
+ * @returns All tiles, those first that remain in view.
  */
 export function takeFar(
   meshes: readonly FarTiles[],
-  selection: DrawnTiles,
+  { tiles, inView }: DrawnTiles,
   renderer: Renderer,
   viewer: Viewer
 ): DrawnTiles {
-  let left = selection
+  let left = tiles.slice(0, inView)
   for (const mesh of meshes) left = mesh.take(left, renderer, viewer)
-  return left
+  const far = meshes.flatMap(mesh => mesh.tiles)
+  return { tiles: [...left, ...far, ...tiles.slice(inView)], inView: left.length }
 }
