@@ -18,7 +18,7 @@ import {
   POLAR,
   tileKey
 } from './mercator'
-import { pagePlaces, type PagePlaces } from './pagePlaces'
+import { fillSmooth, pagePlaces, type PagePlaces } from './pagePlaces'
 import { OVERSHOOT, type RasterSample } from './RasterSampler'
 import { TilePyramid, type FindTile, type HeightTile } from './TilePyramid'
 import {
@@ -194,10 +194,18 @@ export class HeightTiles implements PageSource {
     const fill = (): Float32Array => {
       const heights = new Float32Array(side * side)
       const places = placesOf()
-      this.#pyramid.fill(z, places, find, heights)
+      const between = this.#pyramid.heightsBetween(z, places, find)
+      const isWhole = [...keys].every(key => find(key)?.hasHoles === false)
+      const scale = this.#pyramid.size * 2 ** z
+      const pixels = [this.#store.wide * scale, scale] as const
+      const smoothAt = (i: number): number =>
+        between !== null && isWhole && !this.#isPolar(places.y[i]) ? between(i) : NaN
+      if (fillSmooth(places, side, pixels, smoothAt, heights)) return heights
       for (let i = 0; i < heights.length; i++) {
-        const y = places.y[i]
-        if (this.#isPolar(y)) heights[i] = this.#sample(z, places.x[i], y, find, near).value
+        heights[i] =
+          between === null || this.#isPolar(places.y[i])
+            ? this.#sample(z, places.x[i], places.y[i], find, near).value
+            : between(i)
       }
       return heights
     }

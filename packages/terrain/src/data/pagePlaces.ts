@@ -41,24 +41,26 @@ export function pagePlaces(
     x = new Float64Array(side * side)
     y = new Float64Array(side * side)
   }
-  const blocks = Math.max(Math.ceil((side - 1) / BLOCK), 3)
-  const step = (side - 1) / blocks
   placeOf(side >> 1, side >> 1, position)
   const axis = Math.max(Math.hypot(position.x, position.y) - side * spacing, 0)
   const tolerance = Math.max(TOLERANCE, TOLERANCE_OF_STEP * spacing)
-  if ((step * spacing) ** 4 < 2 * tolerance * axis ** 3) {
-    const nodesX = new Float64Array((blocks + 1) ** 2)
+  if ((BLOCK * spacing) ** 4 < 2 * tolerance * axis ** 3) {
+    const weights = cubicWeights(side, BLOCK)
+    const { nodes } = weights
+    const nodesX = new Float64Array(nodes.length ** 2)
     const nodesY = new Float64Array(nodesX.length)
     let isWhole = true
-    for (let n = 0; n < nodesX.length; n++) {
-      const row = Math.floor(n / (blocks + 1))
-      project(placeOf((n - row * (blocks + 1)) * step, row * step, position), at)
-      nodesX[n] = at.x
-      nodesY[n] = at.y
-      isWhole &&= Math.abs(at.x - nodesX[0]) < period / 2
+    let n = 0
+    for (const row of nodes) {
+      for (const column of nodes) {
+        project(placeOf(column, row, position), at)
+        nodesX[n] = at.x
+        nodesY[n] = at.y
+        isWhole &&= Math.abs(at.x - nodesX[0]) < period / 2
+        n++
+      }
     }
     if (isWhole) {
-      const weights = cubicWeights(side, blocks)
       interpolate(nodesX, weights, x)
       interpolate(nodesY, weights, y)
       return { x, y, isSmooth: true }
@@ -73,46 +75,108 @@ export function pagePlaces(
   return { x, y, isSmooth: false }
 }
 
+/** Steps of a page's heights per pixel of the data in the way between heights that are found exactly: a twelfth. */
+const FINENESS = 12
+
+/**
+ * Heights of a page: where its steps are much smaller than pixels of the data those of every so many are found, and the others by cubic interpolation,
+ * within a thousandth of the differences of neighbouring pixels.
+ *
+ * @param width - Pixels per unit of `x`, `height` per unit of `y`.
+ * @param heightAt - Height of a place by its number; NaN beside smooth data.
+ * @returns False if there is one, and nothing has been filled.
+ */
+export function fillSmooth(
+  { x, y, isSmooth }: PagePlaces,
+  side: number,
+  [width, height]: readonly [number, number],
+  heightAt: (place: number) => number,
+  heights: Float32Array
+): boolean {
+  const middle = (side * side) >> 1
+  const pixels = (next: number): number =>
+    Math.max(
+      Math.abs(x[middle + next] - x[middle]) * width,
+      Math.abs(y[middle + next] - y[middle]) * height
+    )
+  const stride = Math.min(Math.floor(1 / FINENESS / Math.max(pixels(1), pixels(side))), BLOCK)
+  if (!isSmooth || stride < 2) return false
+  const weights = cubicWeights(side, stride)
+  const { nodes } = weights
+  const values = new Float64Array(nodes.length ** 2)
+  let n = 0
+  for (const row of nodes) {
+    for (const column of nodes) {
+      const value = heightAt(row * side + column)
+      if (Number.isNaN(value)) return false
+      values[n++] = value
+    }
+  }
+  interpolate(values, weights, heights)
+  return true
+}
+
 /** Weights of four nodes at each of `side` places, and the first of these nodes (Lagrange). */
 interface Weights {
   readonly side: number
-  readonly nodes: number
+  readonly nodes: readonly number[]
   readonly first: Int32Array
   readonly weights: Float64Array
 }
 
-function cubicWeights(side: number, blocks: number): Weights {
+/** Weights by the places from a node to the next, for pages of the side that was asked for last. */
+let made: Weights[] = []
+
+/** @param step - Places from a node to the next; the last is at the end. */
+function cubicWeights(side: number, step: number): Weights {
+  if (made.find(Boolean)?.side !== side) made = []
+  return (made[step] ??= makeWeights(side, Math.min(step, Math.floor((side - 1) / 3))))
+}
+
+function makeWeights(side: number, stride: number): Weights {
+  const nodes: number[] = []
+  for (let i = 0; i < side - 1; i += stride) nodes.push(i)
+  nodes.push(side - 1)
   const first = new Int32Array(side)
   const weights = new Float64Array(4 * side)
   for (let i = 0; i < side; i++) {
-    const along = (i * blocks) / (side - 1)
-    first[i] = Math.min(Math.max(Math.floor(along) - 1, 0), blocks - 3)
-    const t = along - first[i]
-    const [a, b, c] = [t - 1, t - 2, t - 3]
-    weights.set([(-a * b * c) / 6, (t * b * c) / 2, (-t * a * c) / 2, (t * a * b) / 6], 4 * i)
+    const block = Math.min(Math.max(Math.floor(i / stride) - 1, 0), nodes.length - 4)
+    first[i] = block
+    const four = nodes.slice(block, block + 4)
+    for (const [k, node] of four.entries()) {
+      weights[4 * i + k] = four.reduce(
+        (product, other) => (other === node ? product : (product * (i - other)) / (node - other)),
+        1
+      )
+    }
   }
-  return { side, nodes: blocks + 1, first, weights }
+  return { side, nodes, first, weights }
 }
 
 /** Fills a square by the nodes of a coarser one: along their rows, then between these. */
 function interpolate(
   values: Float64Array,
   { side, nodes, first, weights }: Weights,
-  target: Float64Array
+  target: Float64Array | Float32Array
 ): void {
-  const rows = new Float64Array(nodes * side)
-  const blend = (from: Float64Array, n: number, stride: number, i: number): number =>
-    weights[4 * i] * from[n] +
-    weights[4 * i + 1] * from[n + stride] +
-    weights[4 * i + 2] * from[n + 2 * stride] +
-    weights[4 * i + 3] * from[n + 3 * stride]
-  for (let n = 0; n < rows.length; n++) {
-    const row = Math.floor(n / side)
-    const i = n - row * side
-    rows[n] = blend(values, row * nodes + first[i], 1, i)
+  const count = nodes.length
+  const rows = new Float64Array(count * side)
+  for (let row = 0, n = 0; row < count; row++) {
+    for (let i = 0, w = 0; i < side; i++, w += 4) {
+      const at = row * count + first[i]
+      rows[n++] =
+        weights[w] * values[at] +
+        weights[w + 1] * values[at + 1] +
+        weights[w + 2] * values[at + 2] +
+        weights[w + 3] * values[at + 3]
+    }
   }
   for (let row = 0, n = 0; row < side; row++) {
-    const start = first[row] * side
-    for (let i = 0; i < side; i++) target[n++] = blend(rows, start + i, side, row)
+    const w = 4 * row
+    const [a, b, c, d] = [weights[w], weights[w + 1], weights[w + 2], weights[w + 3]]
+    for (let i = 0, at = first[row] * side; i < side; i++, at++) {
+      target[n++] =
+        a * rows[at] + b * rows[at + side] + c * rows[at + 2 * side] + d * rows[at + 3 * side]
+    }
   }
 }

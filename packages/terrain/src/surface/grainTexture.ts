@@ -6,9 +6,6 @@ const SIZE = 512
 /** Largest slope that bytes can hold. */
 export const GRAIN_SLOPE = 2
 
-/** Most places that are read along a pixel's footprint, where it is long. */
-export const GRAIN_ANISOTROPY = 8
-
 /** Height of stones that is 1 in blue [texels]. */
 const STONE_HEIGHT = 12
 
@@ -193,7 +190,6 @@ export function grainTexture(): DataTexture {
   texture.minFilter = LinearMipmapLinearFilter
   texture.magFilter = LinearFilter
   texture.generateMipmaps = true
-  texture.anisotropy = GRAIN_ANISOTROPY
   texture.needsUpdate = true
   return texture
 }

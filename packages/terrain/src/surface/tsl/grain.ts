@@ -1,22 +1,28 @@
 import { Fn, If, dFdx, dFdy, float, mat4, smoothstep, vec3, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
-import { GRAIN_ANISOTROPY, GRAIN_SLOPE } from '../grainTexture'
+import { GRAIN_SLOPE } from '../grainTexture'
 import { LONGEST_KEPT } from './seaSurface'
-import { alongFrame, frameNear, pieceOf, tilingVertices } from './stochasticTiling'
+import { frameNear, pieceOf, tilingVertices } from './stochasticTiling'
 
-/** Sides of the picture on the ground [m], and size of what a pixel shows at which nothing is left [m]. */
+/** Sides of the picture on the ground [m], and longer side of a pixel's footprint at which nothing is left [m]. */
 const COARSE = { side: 17, gone: 1 }
 const FINE = { side: 2.1, gone: 0.14 }
 
+/** Brush and outcrops, where single stones are too small to be seen: footprints between which they come, and go [m]. */
+const CANOPY = { side: 150, from: 0.35, to: 0.8, fades: 5, gone: 10 }
+
 /**
- * Crowns and outcrops, where single stones are too small to be seen: shorter sides of a pixel's footprint between which they come, and longer ones between
- * which they go [m]. By the longer ones: at eye height they lie on the meadow from 40 m on, as flat spots (*Terrain*, still grass).
+ * Shorter sides of a footprint between which crowns come [m]. By the longer ones, as brush: at eye height crowns lie on the meadow from 40 m on, as flat
+ * black spots (*Terrain*, still grass).
  */
-const CANOPY = { side: 150, from: 0.2, to: 0.45, fades: 5, gone: 10 }
+const CROWNS = [0.2, 0.45] as const
 
 /** Footprint at which the slopes of all stones are smaller than a pixel [m]. */
 const LOST = 0.075
+
+/** Least size of what a picture's level shows, to the longer side of a pixel. */
+const LEAST_SIZE = 0.6
 
 /** Cells of the lattice in 256 m that pieces of stones and grass are moved by, and those of crowns. */
 const CELLS = 36
@@ -64,7 +70,7 @@ export interface Grain {
   readonly lost: Float
 }
 
-type Variable = Vec4 & { addAssign(value: Vec4): void }
+type Variable = Vec4 & { addAssign(value: Vec4): void; mulAssign(value: Vec4): void }
 type Slope = Vec3 & { assign(value: Vec3): void }
 
 /** Stones and grass from 3 m to 1 cm, and crowns from afar; 0 where they are smaller than pixels. */
@@ -75,14 +81,13 @@ export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
   const along = dFdy(offset).toConst() as Vec3
   const [width, height] = [across.length().toConst(), along.length().toConst()] as Float[]
   const footprint = width.max(height).toConst() as Float
-  const shorter = across.cross(along).length().div(footprint.max(1e-9)).toConst() as Float
-  // Of a pixel that shows a long strip of the ground several places are read along it.
-  const size = shorter.max(footprint.div(GRAIN_ANISOTROPY)).toConst() as Float
+  // Between both sides of a pixel, nearer to the longer one where it is much longer: one look-up a picture, of little blur and little shimmer.
+  const size = width.mul(height).sqrt().max(footprint.mul(LEAST_SIZE))
   const share = ({ gone }: typeof FINE): Float =>
-    float(1).sub(size.div(gone)).div(FADE).min(1).toConst()
+    float(1).sub(footprint.div(gone)).div(FADE).min(1).toConst()
   const near = share(FINE)
   const far = share(COARSE)
-  const canopy = smoothstep(CANOPY.from, CANOPY.to, shorter)
+  const canopy = smoothstep(CANOPY.from, CANOPY.to, footprint)
     .mul(smoothstep(CANOPY.fades, CANOPY.gone, footprint).oneMinus())
     .toConst() as Float
   // Several vectors in one value: what the branches of both need is found once, and none of it far away.
@@ -94,8 +99,8 @@ export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
     const crowns = vec4(0).toVar() as unknown as Variable
     const crownSlope = vec3(0).toVar() as unknown as Slope
     const find = (): void => {
-      const axes = frameNear(normal, place.up, first)
-      const frame = { ...axes, across: alongFrame(axes, across), along: alongFrame(axes, along) }
+      const logSize = size.max(1e-6).log2().toConst() as Float
+      const frame = { ...frameNear(normal, place.up, first), logSize }
       const inSpace = ({ x, y }: Vec4): Vec3 =>
         frame.tangent.mul(x).add(frame.bitangent.mul(y)).mul(GRAIN_SLOPE)
       If(canopy.greaterThan(0), () => {
@@ -103,6 +108,9 @@ export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
           const piece = pieceOf(grain, frame, CANOPY.side, away, random.xy)
           crowns.addAssign(piece.mul(share.mul(canopy)))
         })
+        const shorter = across.cross(along).length().div(footprint.max(1e-9))
+        const raised = smoothstep(...CROWNS, shorter).toConst()
+        crowns.mulAssign(vec4(vec3(raised), 1))
         crownSlope.assign(inSpace(crowns))
       })
       if (detail < 2) return

@@ -20,14 +20,13 @@ import type { Texture } from 'three'
 import { latticeGradient } from '../../noise/tsl/latticeNoise'
 import type { Float, UInt, UVec4, Vec2, Vec3, Vec4 } from '../../tsl-types'
 
-/** Directions in which pictures are laid, and the extent of what a pixel shows. */
+/** Directions in which pictures are laid, and the level of detail that they are read at. */
 export interface TilingFrame {
   /** Orthonormal vectors along the surface. */
   readonly tangent: Vec3
   readonly bitangent: Vec3
-  /** Way along both from a pixel to the next, to the right and up or down [m]. */
-  readonly across: Vec2
-  readonly along: Vec2
+  /** Binary logarithm of the size of what a pixel shows [m]. */
+  readonly logSize: Float
 }
 
 /** Vertex of the lattice that counts at a place. */
@@ -123,10 +122,8 @@ export function tilingVertices(reference: Vec3, offset: Vec3, cells: number): Ti
 }
 
 /** Vector along a surface in the directions of its frame. */
-export const alongFrame = (
-  { tangent, bitangent }: Pick<TilingFrame, 'tangent' | 'bitangent'>,
-  vector: Vec3
-): Vec2 => vec2(vector.dot(tangent), vector.dot(bitangent)).toConst() as Vec2
+const alongFrame = ({ tangent, bitangent }: TilingFrame, vector: Vec3): Vec2 =>
+  vec2(vector.dot(tangent), vector.dot(bitangent))
 
 /**
  * Piece of a picture that a vertex of the lattice has, moved at random and laid along the surface through the vertex: nothing is stretched
@@ -145,8 +142,10 @@ export function pieceOf(
   moved: Vec2
 ): Vec4 {
   const place = alongFrame(frame, away).div(side).add(moved)
-  const node = texture(picture, place) as unknown as { grad(x: Vec2, y: Vec2): Vec4 }
-  return node.grad(frame.across.div(side), frame.along.div(side)).mul(2).sub(1)
+  const node = texture(picture, place) as unknown as { level(level: Float): Vec4 }
+  const { width } = picture.image as { width: number }
+  const level = frame.logSize.add(Math.log2(width / side)).max(0)
+  return node.level(level).mul(2).sub(1)
 }
 
 /** Sine of the slope from which on pictures lie on a tilted plane, and sine and cosine of its tilt: of 55°. */
