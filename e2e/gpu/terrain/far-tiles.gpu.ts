@@ -1,5 +1,5 @@
 import { Atmosphere, SkyLightProbe, SunDirectionalLight } from '@welkin/atmosphere'
-import { MountainHeights, Terrain } from '@welkin/terrain'
+import { farTiles, MountainHeights, Terrain } from '@welkin/terrain'
 import { Matrix4, PerspectiveCamera, Scene } from 'three'
 import { gpuTest } from '../harness/gpu-test'
 
@@ -16,7 +16,8 @@ gpuTest('tiles far away look the same by materials of less code, at borders too'
   const { ellipsoid } = atmosphere
   const terrain = new Terrain(atmosphere, new MountainHeights({ seed: 513 }), {
     resolution: 8,
-    pageMemory: 8
+    pageMemory: 8,
+    far: farTiles
   })
   const sun = new SunDirectionalLight(atmosphere)
   const scene = new Scene()

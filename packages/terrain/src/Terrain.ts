@@ -35,8 +35,7 @@ import { TerrainUniforms } from './TerrainUniforms'
 import type { TerrainHorizon } from './tiles/TerrainHorizon'
 import { figureOf, isFlat, poleOf, worldToGround, type Figure } from './tiles/cpu/figure'
 import { viewerOf } from './tiles/cpu/viewer'
-import { farTiles, isShadowPass, takeFar } from './tiles/FarTiles'
-import type { DrawnTiles, FarTiles } from './tiles/FarTiles'
+import type { DrawnTiles, FarParts } from './tiles/FarTiles'
 import { tileGrid } from './tiles/tileGrid'
 import { ellipsoidInShader, planeInShader } from './tiles/tsl/figure'
 import { writeTiles } from './tiles/writeTiles'
@@ -92,8 +91,7 @@ export class Terrain extends SeaMesh {
   readonly #uniforms: TerrainUniforms
   readonly #tiles: PagedTiles
   readonly #grain: Texture
-  /** Tiles with materials of less code, the farthest first. */
-  readonly #far: readonly FarTiles[]
+  readonly #far: FarParts | null
   #drawn: DrawnTiles = { tiles: [], inView: 0 }
   #shadowDistance = 0
   #camera: Camera | null = null
@@ -117,7 +115,7 @@ export class Terrain extends SeaMesh {
     const materialOf = (code: GroundDetail) =>
       terrainMaterial(atmosphere, tiles.pages.atlas, grain, uniforms, inShader, all, code)
     super(grid(), materialOf(2), uniforms)
-    this.#far = farTiles(this, grid, materialOf)
+    this.#far = all.far?.(this, grid, materialOf) ?? null
     this.#figure = figure
     this.#uniforms = uniforms
     this.#tiles = tiles
@@ -291,9 +289,9 @@ export class Terrain extends SeaMesh {
     this.#uniforms.referenceECEF(reference)
     this.maps?.update(renderer)
     this.mask?.update(figure, reference)
-    this.#drawn = takeFar(this.#far, selection, renderer, viewer)
+    this.#drawn = this.#far?.take(selection, viewer, camera, fromWorld, renderer) ?? selection
     const own = { geometry: this.geometry, tiles: this.#drawn.tiles }
-    for (const { geometry, tiles } of [own, ...this.#far])
+    for (const { geometry, tiles } of [own, ...(this.#far?.meshes ?? [])])
       writeTiles(geometry, tiles, positionECEF, reference, ground, tree.ranges)
     // The ground's axes at the camera.
     matrix.copy(fromWorld).invert().decompose(subpoint, quaternion, scale)
@@ -303,7 +301,8 @@ export class Terrain extends SeaMesh {
 
   /** Chooses tiles before three draws them; shadow maps are drawn with those of the viewer, out of view too. */
   override onBeforeRender(renderer: unknown, scene: Scene, camera: Camera): void {
-    const isShadow = isShadowPass(scene)
+    const pass = scene.overrideMaterial as { isShadowPassMaterial?: boolean } | null
+    const isShadow = pass?.isShadowPassMaterial === true
     if (!isShadow && (this.#camera === null || camera === this.#camera))
       this.update(renderer as Renderer, camera)
     const { tiles, inView } = this.#drawn
@@ -345,6 +344,6 @@ export class Terrain extends SeaMesh {
     this.#grain.dispose()
     this.geometry.dispose()
     this.material.dispose()
-    for (const far of this.#far) far.dispose()
+    this.#far?.dispose()
   }
 }

@@ -37,6 +37,10 @@ it('bounds what a pixel shows of a tile, and is no less than a tenth of it', () 
       camera.position.copy(position)
       camera.updateMatrixWorld()
       const viewer = viewerOf(camera, position, clearance, source.lowest, new Matrix4(), earth, 0)
+      const { seaLevel } = viewer
+      const forward = camera.getWorldDirection(new Vector3())
+      const pixel = (2 * Math.tan(Math.PI / 6)) / LINES
+      const sight = { position, seaLevel, forward, pixel }
       const tree = new TileTree(earth, source, 17, 1.2)
       const { tiles } = tree.select(viewer, 3000, noTiles(), false)
       const inPicture = (point: Vector3): Vector3 => {
@@ -46,7 +50,7 @@ it('bounds what a pixel shows of a tile, and is no less than a tenth of it', () 
       for (const [n, [across, along, ...way]] of places.entries()) {
         const tile = tiles[(n * 7919) % tiles.length]
         if (tile === undefined) continue
-        const least = leastFootprint(tile, viewer, viewer.pictureHeight / LINES)
+        const least = leastFootprint(tile, sight)
         if (least === 0) continue
         const { outward, first, second } = faceAxes(tile.face)
         const { extent } = tile

@@ -92,8 +92,6 @@ describe('tiles of a plane', () => {
     const viewer = {
       position: new Vector3(300, 40, -700),
       datumPoint: new Vector3(300, 20, -700),
-      forward: new Vector3(1, 0, 0),
-      pictureHeight: 1,
       planes: [],
       seaLevel: -Infinity,
       isOverGround: false,

@@ -28,28 +28,6 @@ interface Request<T> {
   timer?: ReturnType<typeof setTimeout>
 }
 
-/** What to do when a signal is aborted; it has a listener while there is anything. */
-class Leaving extends Set<() => void> {
-  readonly #signal: AbortSignal
-  readonly #leave = (): void => this.forEach(leave => leave())
-
-  constructor(signal: AbortSignal) {
-    super()
-    this.#signal = signal
-  }
-
-  override add(leave: () => void): this {
-    if (this.size === 0) this.#signal.addEventListener('abort', this.#leave)
-    return super.add(leave)
-  }
-
-  override delete(leave: () => void): boolean {
-    const isThere = super.delete(leave)
-    if (this.size === 0) this.#signal.removeEventListener('abort', this.#leave)
-    return isThere
-  }
-}
-
 /**
  * Queue of loads: the lowest priority number first, and of equal ones the newest, so that a fast flight gets what it sees
  * now. A key is loaded once for all who wait for it, and given up when the last of them does.
@@ -58,8 +36,6 @@ export class TileRequests<T> {
   readonly #load: (key: number, signal: AbortSignal) => Promise<T>
   readonly #options: TileRequestsOptions
   readonly #requests = new Map<number, Request<T>>()
-  /** What to do when a signal is aborted: a page waits for many tiles with one signal, which gets one listener. */
-  readonly #leaving = new WeakMap<AbortSignal, Leaving>()
   #loading = 0
   #calls = 0
 
@@ -89,14 +65,14 @@ export class TileRequests<T> {
         reject(abortReason(signal))
         return
       }
+      // A page waits for many tiles with one signal, which Node would warn of.
+      const given = AbortSignal.any([signal])
       const request = this.#requestOf(key)
       request.priority = Math.min(request.priority, priority)
       request.order = ++this.#calls
-      const leaving = this.#leaving.get(signal) ?? new Leaving(signal)
-      this.#leaving.set(signal, leaving)
       const forget = (): void => {
         request.waiters.delete(waiter)
-        leaving.delete(leave)
+        given.removeEventListener('abort', leave)
       }
       const leave = (): void => {
         forget()
@@ -114,7 +90,7 @@ export class TileRequests<T> {
         }
       }
       request.waiters.add(waiter)
-      leaving.add(leave)
+      given.addEventListener('abort', leave)
       this.#fill()
     })
   }

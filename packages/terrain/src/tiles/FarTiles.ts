@@ -1,5 +1,5 @@
 import { Mesh, Vector2, Vector3 } from 'three'
-import type { InstancedBufferGeometry, Scene } from 'three'
+import type { Camera, InstancedBufferGeometry, Matrix4 } from 'three'
 import type { MeshStandardNodeMaterial, Renderer } from 'three/webgpu'
 import { LEAST_FOOTPRINTS, type GroundDetail } from '../surface/tsl/grain'
 import type { Viewer } from './cpu/viewer'
@@ -15,23 +15,25 @@ export type DrawnTiles = Pick<TileSelection, 'tiles' | 'inView'>
 const SHARED = ['receiveShadow', 'renderOrder', 'layers'] as const
 
 const point = new Vector3()
+const forward = new Vector3()
 const size = new Vector2()
 
-/** True of three's drawing of shadow maps. */
-export const isShadowPass = ({ overrideMaterial }: Scene): boolean =>
-  (overrideMaterial as { isShadowPassMaterial?: boolean } | null)?.isShadowPassMaterial === true
+/** View of a camera. ECEF axes. */
+export interface Sight extends Pick<Viewer, 'position' | 'seaLevel'> {
+  /** Unit vector along the middle of the view. */
+  readonly forward: Vector3
+  /** Height of a pixel over the focal length; 0 for parallel lines of sight [–]. */
+  readonly pixel: number
+}
 
 /**
  * Least side of what a pixel shows of a tile, at most steep ground of a half; 0 where that is not known [m].
  *
  * A way δ along the ground at a distance d, at an angle θ to the middle of the view, is at most δ f / (d cos² θ) in the picture, with f the focal length.
- *
- * @param pixel - Height of a pixel over the focal length [–].
  */
 export function leastFootprint(
   { center, normal, radius, lowest, highest }: Tile,
-  { position, forward, seaLevel }: Viewer,
-  pixel: number
+  { position, seaLevel, ...view }: Sight
 ): number {
   const low = Math.max(lowest, seaLevel)
   const high = Math.max(highest, seaLevel)
@@ -42,11 +44,11 @@ export function leastFootprint(
   const distance = point.length()
   const spread = Math.hypot(radius, Math.min(high - low, radius) / 2)
   if (spread >= distance) return 0
-  const cosine = point.dot(forward) / distance
+  const cosine = point.dot(view.forward) / distance
   const sine = Math.sqrt(Math.max(1 - cosine ** 2, 0))
   const part = spread / distance
   const least = cosine * Math.sqrt(1 - part ** 2) - sine * part
-  return least > 0 ? (distance - spread) * least ** 2 * pixel : 0
+  return least > 0 ? (distance - spread) * least ** 2 * view.pixel : 0
 }
 
 /**
@@ -88,16 +90,15 @@ export class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMate
    * @param tiles - In view.
    * @returns The other ones.
    */
-  take(tiles: readonly Tile[], renderer: Renderer, viewer: Viewer): Tile[] {
+  take(tiles: readonly Tile[], sight: Sight): Tile[] {
     const terrain = this.#terrain
     const { material } = terrain
     const isUntouched =
       this.parent === terrain &&
       material === this.#material &&
       this.#properties.every(([name, value]) => (material as never)[name] === value)
-    const height = renderer.getRenderTarget()?.height ?? renderer.getDrawingBufferSize(size).y
-    const pixel = isUntouched ? viewer.pictureHeight / height : 0
-    const isFar = (tile: Tile): boolean => leastFootprint(tile, viewer, pixel) > this.footprint
+    const isFar = (tile: Tile): boolean =>
+      isUntouched && leastFootprint(tile, sight) > this.footprint
     const parts = [[], []] as Tile[][]
     for (const tile of tiles) parts[Number(isFar(tile))].push(tile)
     this.tiles = parts[1]
@@ -115,29 +116,55 @@ export class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMate
   }
 }
 
-/** Meshes for tiles far away, the farthest first. */
-export const farTiles = (
+/** Tiles far away of a terrain. */
+export interface FarParts {
+  readonly meshes: readonly FarTiles[]
+
+  /**
+   * Has tiles far away drawn by their meshes.
+   *
+   * @param toECEF - Rotation and scale of the world.
+   * @returns All tiles, those first that remain in view.
+   */
+  take(
+    drawn: DrawnTiles,
+    viewer: Viewer,
+    camera: Camera,
+    toECEF: Matrix4,
+    renderer: Renderer
+  ): DrawnTiles
+  dispose(): void
+}
+
+/**
+ * Has tiles far away drawn with materials of less code, which show the same: for the option `far` of a terrain.
+ *
+ * ```ts
+ * const terrain = new Terrain(atmosphere, new MountainHeights(), { far: farTiles })
+ * ```
+ */
+export function farTiles(
   terrain: TileMesh,
   grid: () => InstancedBufferGeometry,
   materialOf: (code: GroundDetail) => MeshStandardNodeMaterial
-): FarTiles[] =>
-  ([0, 1] as const).map(
+): FarParts {
+  const meshes = ([0, 1] as const).map(
     code => new FarTiles(terrain, grid(), materialOf(code), LEAST_FOOTPRINTS[code])
   )
-
-/**
- * Has tiles far away drawn by their meshes.
- *
- * @returns All tiles, those first that remain in view.
- */
-export function takeFar(
-  meshes: readonly FarTiles[],
-  { tiles, inView }: DrawnTiles,
-  renderer: Renderer,
-  viewer: Viewer
-): DrawnTiles {
-  let left = tiles.slice(0, inView)
-  for (const mesh of meshes) left = mesh.take(left, renderer, viewer)
-  const far = meshes.flatMap(mesh => mesh.tiles)
-  return { tiles: [...left, ...far, ...tiles.slice(inView)], inView: left.length }
+  return {
+    meshes,
+    take({ tiles, inView }, { position, seaLevel }, camera, toECEF, renderer) {
+      const { elements } = camera.projectionMatrix
+      const lines = renderer.getRenderTarget()?.height ?? renderer.getDrawingBufferSize(size).y
+      forward.setFromMatrixColumn(camera.matrixWorld, 2).negate().transformDirection(toECEF)
+      const pixel = elements[15] === 1 ? 0 : 2 / Math.abs(elements[5]) / lines
+      let left = tiles.slice(0, inView)
+      for (const mesh of meshes) left = mesh.take(left, { position, seaLevel, forward, pixel })
+      const far = meshes.flatMap(mesh => mesh.tiles)
+      return { tiles: [...left, ...far, ...tiles.slice(inView)], inView: left.length }
+    },
+    dispose() {
+      for (const mesh of meshes) mesh.dispose()
+    }
+  }
 }

@@ -84,7 +84,7 @@ export function seaSurface(
   place: SeaPlace,
   seaVariance: Float,
   seconds: Float,
-  hasWaves: boolean
+  hasWaves = true
 ): SeaSurface {
   const { offset, depth, up, footprint, spread } = place
   const shallow = spread.mul(SHALLOW_SPREAD).max(SHALLOW)

@@ -13,10 +13,6 @@ export interface Viewer {
   readonly datumPoint: Vector3
   /** Height above the ground [m]. */
   readonly clearance: number
-  /** Unit vector along the middle of the view. */
-  readonly forward: Vector3
-  /** Height of the picture over the focal length; 0 for parallel lines of sight [–]. */
-  readonly pictureHeight: number
   /** Sides of the view, relative to the position. */
   readonly planes: readonly Plane[]
   /** True of a viewer who looks from a point over the ground: one below it, or with parallel lines of sight, sees what ground hides from others. */
@@ -75,14 +71,8 @@ export function viewerOf(
   // Heights shrink by the largest radius at least, where the ellipsoid is the unit sphere.
   const occluder = 1 + Math.min(lowest, 0) / figure.minimumRadius
   const horizon = isFlat(figure) ? Infinity : horizonAngle(radius, occluder)
-  const { elements } = camera.projectionMatrix
   return {
     position: positionECEF.clone(),
-    forward: new Vector3()
-      .setFromMatrixColumn(camera.matrixWorld, 2)
-      .negate()
-      .transformDirection(worldToECEF),
-    pictureHeight: elements[15] === 1 ? 0 : 2 / Math.abs(elements[5]),
     datumPoint: subpoint.clone().addScaledVector(up, clearance),
     clearance,
     // Left, right, top and bottom: near and far depend on the kind of depth.
