@@ -1,5 +1,6 @@
 import { Matrix4, Quaternion, Vector3 } from 'three'
-import type { Camera, Intersection, Raycaster, Scene, Texture } from 'three'
+import type { Camera, InstancedBufferGeometry, Intersection, Raycaster } from 'three'
+import type { Scene, Texture } from 'three'
 import type { Renderer } from 'three/webgpu'
 import { checkAtmosphere, checkRange, withDefaults, type Atmosphere } from '@welkin/atmosphere'
 import {
@@ -22,7 +23,7 @@ import type { GroundMaps } from './surface/maps/GroundMaps'
 import type { GroundMask } from './surface/maps/GroundMask'
 import { SeaMesh } from './surface/SeaMesh'
 import type { GroundDetail } from './surface/tsl/grain'
-import { terrainMaterial } from './surface/terrainMaterial'
+import { isShadowPass, terrainMaterial } from './surface/terrainMaterial'
 import {
   checkFixed,
   checkSource,
@@ -35,7 +36,8 @@ import { TerrainUniforms } from './TerrainUniforms'
 import type { TerrainHorizon } from './tiles/TerrainHorizon'
 import { figureOf, isFlat, poleOf, worldToGround, type Figure } from './tiles/cpu/figure'
 import { viewerOf } from './tiles/cpu/viewer'
-import type { DrawnTiles, FarParts } from './tiles/FarTiles'
+import type { DrawnTiles, TakeFar } from './tiles/FarTiles'
+import type { Tile } from './tiles/Tile'
 import { tileGrid } from './tiles/tileGrid'
 import { ellipsoidInShader, planeInShader } from './tiles/tsl/figure'
 import { writeTiles } from './tiles/writeTiles'
@@ -91,7 +93,7 @@ export class Terrain extends SeaMesh {
   readonly #uniforms: TerrainUniforms
   readonly #tiles: PagedTiles
   readonly #grain: Texture
-  readonly #far: FarParts | null
+  readonly #takeFar: TakeFar | undefined
   #drawn: DrawnTiles = { tiles: [], inView: 0 }
   #shadowDistance = 0
   #camera: Camera | null = null
@@ -115,7 +117,7 @@ export class Terrain extends SeaMesh {
     const materialOf = (code: GroundDetail) =>
       terrainMaterial(atmosphere, tiles.pages.atlas, grain, uniforms, inShader, all, code)
     super(grid(), materialOf(2), uniforms)
-    this.#far = all.far?.(this, grid, materialOf) ?? null
+    this.#takeFar = all.far?.(this, grid, materialOf)
     this.#figure = figure
     this.#uniforms = uniforms
     this.#tiles = tiles
@@ -289,10 +291,11 @@ export class Terrain extends SeaMesh {
     this.#uniforms.referenceECEF(reference)
     this.maps?.update(renderer)
     this.mask?.update(figure, reference)
-    this.#drawn = this.#far?.take(selection, viewer, camera, fromWorld, renderer) ?? selection
-    const own = { geometry: this.geometry, tiles: this.#drawn.tiles }
-    for (const { geometry, tiles } of [own, ...(this.#far?.meshes ?? [])])
-      writeTiles(geometry, tiles, positionECEF, reference, ground, tree.ranges)
+    const write = (geometry: InstancedBufferGeometry, of: readonly Tile[]): void =>
+      writeTiles(geometry, of, positionECEF, reference, ground, tree.ranges)
+    this.#drawn =
+      this.#takeFar?.(selection, viewer, camera, fromWorld, renderer, write) ?? selection
+    write(this.geometry, this.#drawn.tiles)
     // The ground's axes at the camera.
     matrix.copy(fromWorld).invert().decompose(subpoint, quaternion, scale)
     this.matrixWorld.compose(positionWorld, quaternion, scale)
@@ -301,8 +304,7 @@ export class Terrain extends SeaMesh {
 
   /** Chooses tiles before three draws them; shadow maps are drawn with those of the viewer, out of view too. */
   override onBeforeRender(renderer: unknown, scene: Scene, camera: Camera): void {
-    const pass = scene.overrideMaterial as { isShadowPassMaterial?: boolean } | null
-    const isShadow = pass?.isShadowPassMaterial === true
+    const isShadow = isShadowPass(scene.overrideMaterial)
     if (!isShadow && (this.#camera === null || camera === this.#camera))
       this.update(renderer as Renderer, camera)
     const { tiles, inView } = this.#drawn
@@ -344,6 +346,5 @@ export class Terrain extends SeaMesh {
     this.#grain.dispose()
     this.geometry.dispose()
     this.material.dispose()
-    this.#far?.dispose()
   }
 }

@@ -155,12 +155,7 @@ export class HeightPages {
     const { lowest, highest } = this.#source
     const spacing = spacingOf(tile, this.#baker.figure, this.atlas.surfaceSide - 1)
     const margin = this.#source.variation(MARGIN_STEPS * spacing)
-    let [least, most] = [Infinity, -Infinity]
-    for (let i = 0; i < heights.length; i++) {
-      const height = heights[i]
-      if (height < least) least = height
-      if (height > most) most = height
-    }
+    const [least, most] = boundsOf(heights)
     tile.lowest = Math.min(Math.max(least - margin, lowest), least)
     tile.highest = Math.max(Math.min(most + margin, highest), most)
   }
@@ -198,7 +193,7 @@ export class HeightPages {
       this.#wrong = { answer: isArray ? heights.length : heights }
       throw new Error('no heights')
     }
-    if (!heights.every(Number.isFinite)) throw new Error('heights that are not finite')
+    if (!boundsOf(heights).every(Number.isFinite)) throw new Error('heights that are not finite')
     return heights
   }
 
@@ -236,4 +231,14 @@ export class HeightPages {
     this.atlas.dispose()
     this.#baker.dispose()
   }
+}
+
+/** Least and greatest height; NaN if there is one among them. */
+function boundsOf(heights: Float32Array): [number, number] {
+  let [least, most] = [Infinity, -Infinity]
+  for (const height of heights) {
+    least = Math.min(least, height)
+    most = Math.max(most, height)
+  }
+  return [least, most]
 }

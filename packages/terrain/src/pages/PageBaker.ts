@@ -1,4 +1,4 @@
-import { DataArrayTexture, DataTexture, FloatType, NearestFilter, RedFormat } from 'three'
+import { DataArrayTexture, DataTexture, FloatType, RedFormat } from 'three'
 import { uniform } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
@@ -19,9 +19,6 @@ import {
   surfaceOf,
   type PageUniforms
 } from './tsl/pageOutput'
-
-/** Pages of loaded heights that are drawn at once. */
-const MOST_LOADED = 16
 
 /** Largest step between heights of a page with so many steps along an edge [m]. */
 export const spacingOf = ({ extent }: Tile, { maximumRadius }: Figure, steps: number): number =>
@@ -63,16 +60,14 @@ export class PageBaker {
       this.#image = { texture, quads: images }
     }
     if (isPageSource(source)) {
-      const heightsOfPages = new Float32Array(MOST_LOADED * side ** 2)
-      const texture = new DataArrayTexture(heightsOfPages, side, side, MOST_LOADED)
+      const data = new Float32Array(MOST * side ** 2)
+      const texture = new DataArrayTexture(data, side, side, MOST)
       texture.name = 'Welkin.Terrain.loaded'
       texture.format = RedFormat
       texture.type = FloatType
-      texture.minFilter = texture.magFilter = NearestFilter
       this.#loaded = texture
-      const loaded = { texture, layer: quads.row }
-      quads.addPass('heights', loadedHeightsOf(loaded, tile, heightSide, density), heights)
-      quads.addPass('surface', loadedSurfaceOf(loaded, tile, surfaceSide, density), surface)
+      quads.addPass('heights', loadedHeightsOf(texture, tile, heightSide, density), heights)
+      quads.addPass('surface', loadedSurfaceOf(texture, tile, surfaceSide, density), surface)
     } else {
       quads.addPass('heights', heightsOf(source, tile, heightSide), heights)
       quads.addPass('surface', surfaceOf(source, tile, surfaceSide, density), surface)
@@ -110,15 +105,15 @@ export class PageBaker {
    * @param heights - Loaded heights, as many as `request` asked for; null for a source that is a function.
    */
   bake(renderer: Renderer, tile: Tile, slot: number, heights: Float32Array | null = null): void {
-    const row = this.#quads.count
-    this.#quads.add(tile, slot, 2 * spacingOf(tile, this.figure, this.#resolution))
+    const row = this.#quads.add(tile, slot, 2 * spacingOf(tile, this.figure, this.#resolution))
     this.#readback?.add(tile)
-    if (this.#loaded !== null && heights !== null) {
-      ;(this.#loaded.image.data as Float32Array).set(heights, row * heights.length)
-      this.#loaded.addLayerUpdate(row)
-      this.#loaded.needsUpdate = true
+    const loaded = this.#loaded
+    if (loaded !== null && heights !== null) {
+      loaded.image.data!.set(heights, row * heights.length)
+      loaded.addLayerUpdate(row)
+      loaded.needsUpdate = true
     }
-    if (row + 1 === (this.#loaded === null ? MOST : MOST_LOADED)) this.flush(renderer)
+    if (row + 1 === MOST) this.flush(renderer)
   }
 
   /** Draws the pages that wait; with a read-back their tiles have the heights some frames later. */

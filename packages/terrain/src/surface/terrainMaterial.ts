@@ -39,8 +39,8 @@ import { GroundMaterial, viewDirection } from './GroundMaterial'
 import { WaterMirrorNode } from './WaterMirrorNode'
 
 /** True of the material that three draws shadow maps with. */
-const isShadowPass = (material: object): boolean =>
-  (material as { isShadowPassMaterial?: boolean }).isShadowPassMaterial === true
+export const isShadowPass = (material: object | null): boolean =>
+  (material as { isShadowPassMaterial?: boolean } | null)?.isShadowPassMaterial === true
 
 /** Varying: vertices assign it, pixels read it. */
 const handedOn = <T extends Node>(type: string, name: string): T & { assign(value: T): void } =>

@@ -108,33 +108,23 @@ export class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMate
 
   /** The terrain itself finds hits of rays. */
   override raycast(): void {}
-
-  override dispose(): void {
-    super.dispose()
-    this.geometry.dispose()
-    this.material.dispose()
-  }
 }
 
-/** Tiles far away of a terrain. */
-export interface FarParts {
-  readonly meshes: readonly FarTiles[]
-
-  /**
-   * Has tiles far away drawn by their meshes.
-   *
-   * @param toECEF - Rotation and scale of the world.
-   * @returns All tiles, those first that remain in view.
-   */
-  take(
-    drawn: DrawnTiles,
-    viewer: Viewer,
-    camera: Camera,
-    toECEF: Matrix4,
-    renderer: Renderer
-  ): DrawnTiles
-  dispose(): void
-}
+/**
+ * Has tiles far away drawn by meshes of their own.
+ *
+ * @param toECEF - Rotation and scale of the world.
+ * @param write - Writes tiles as instances of a geometry.
+ * @returns All tiles, those first that remain in view.
+ */
+export type TakeFar = (
+  drawn: DrawnTiles,
+  viewer: Viewer,
+  camera: Camera,
+  toECEF: Matrix4,
+  renderer: Renderer,
+  write: (geometry: InstancedBufferGeometry, tiles: readonly Tile[]) => void
+) => DrawnTiles
 
 /**
  * Has tiles far away drawn with materials of less code, which show the same: for the option `far` of a terrain.
@@ -147,24 +137,28 @@ export function farTiles(
   terrain: TileMesh,
   grid: () => InstancedBufferGeometry,
   materialOf: (code: GroundDetail) => MeshStandardNodeMaterial
-): FarParts {
+): TakeFar {
   const meshes = ([0, 1] as const).map(
     code => new FarTiles(terrain, grid(), materialOf(code), LEAST_FOOTPRINTS[code])
   )
-  return {
-    meshes,
-    take({ tiles, inView }, { position, seaLevel }, camera, toECEF, renderer) {
-      const { elements } = camera.projectionMatrix
-      const lines = renderer.getRenderTarget()?.height ?? renderer.getDrawingBufferSize(size).y
-      forward.setFromMatrixColumn(camera.matrixWorld, 2).negate().transformDirection(toECEF)
-      const pixel = elements[15] === 1 ? 0 : 2 / Math.abs(elements[5]) / lines
-      let left = tiles.slice(0, inView)
-      for (const mesh of meshes) left = mesh.take(left, { position, seaLevel, forward, pixel })
-      const far = meshes.flatMap(mesh => mesh.tiles)
-      return { tiles: [...left, ...far, ...tiles.slice(inView)], inView: left.length }
-    },
-    dispose() {
-      for (const mesh of meshes) mesh.dispose()
+  terrain.geometry.addEventListener('dispose', () => {
+    for (const { geometry, material } of meshes) {
+      geometry.dispose()
+      material.dispose()
     }
+  })
+  return ({ tiles, inView }, { position, seaLevel }, camera, toECEF, renderer, write) => {
+    const { elements } = camera.projectionMatrix
+    const lines = renderer.getRenderTarget()?.height ?? renderer.getDrawingBufferSize(size).y
+    forward.setFromMatrixColumn(camera.matrixWorld, 2).negate().transformDirection(toECEF)
+    const pixel = elements[15] === 1 ? 0 : 2 / Math.abs(elements[5]) / lines
+    let left = tiles.slice(0, inView)
+    const far: Tile[] = []
+    for (const mesh of meshes) {
+      left = mesh.take(left, { position, seaLevel, forward, pixel })
+      write(mesh.geometry, mesh.tiles)
+      far.push(...mesh.tiles)
+    }
+    return { tiles: [...left, ...far, ...tiles.slice(inView)], inView: left.length }
   }
 }

@@ -108,7 +108,7 @@ export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
           const piece = pieceOf(grain, frame, CANOPY.side, away, random.xy)
           crowns.addAssign(piece.mul(share.mul(canopy)))
         })
-        const shorter = across.cross(along).length().div(footprint.max(1e-9))
+        const shorter = across.cross(along).length().div(footprint)
         const raised = smoothstep(...CROWNS, shorter).toConst()
         crowns.mulAssign(vec4(vec3(raised), 1))
         crownSlope.assign(inSpace(crowns))
