@@ -31,7 +31,7 @@ const WARM_UP = 10
 /** Frames after which a picture that is not full has failed. */
 const MOST_FRAMES = 5000
 
-/** Where a camera is, and where it looks. */
+/** Place and direction of a camera. */
 export interface TerrainView {
   readonly name: string
   /** Over the ground [m]. */

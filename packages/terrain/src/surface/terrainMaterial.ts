@@ -40,7 +40,7 @@ import { WaterMirrorNode } from './WaterMirrorNode'
 
 /** True of the material that three draws shadow maps with. */
 export const isShadowPass = (material: object | null): boolean =>
-  (material as { isShadowPassMaterial?: boolean } | null)?.isShadowPassMaterial === true
+  material !== null && 'isShadowPassMaterial' in material
 
 /** Varying: vertices assign it, pixels read it. */
 const handedOn = <T extends Node>(type: string, name: string): T & { assign(value: T): void } =>

@@ -79,7 +79,7 @@ export class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMate
     this.matrixAutoUpdate = this.matrixWorldAutoUpdate = false
     this.matrixWorld = terrain.matrixWorld
     for (const name of SHARED) {
-      Object.defineProperty(this, name, { get: () => terrain[name], set: () => undefined })
+      Object.defineProperty(this, name, { get: () => terrain[name], set() {} })
     }
     terrain.add(this)
   }

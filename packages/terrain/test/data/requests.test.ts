@@ -46,15 +46,10 @@ describe('requests', () => {
   it('of one page, however many, add no listeners to its signal, and are given up with it', async () => {
     const page = new AbortController()
     const { signal } = page
-    let listeners = 0
-    const add = signal.addEventListener
-    signal.addEventListener = (...parameters: Parameters<typeof add>) => {
-      listeners++
-      add.apply(signal, parameters)
-    }
+    const add = vi.spyOn(signal, 'addEventListener')
     const requests = new TileRequests(() => new Promise<number>(() => {}), settings)
     const all = Array.from({ length: 30 }, (_, key) => requests.get(key, 0, signal))
-    expect(listeners).toBeLessThan(2)
+    expect(add.mock.calls.length).toBeLessThan(2)
     expect(requests.size).toBe(30)
     page.abort()
     const answers = await Promise.allSettled(all)

@@ -24,6 +24,9 @@ const LOST = 0.075
 /** Least size of what a picture's level shows, to the longer side of a pixel. */
 const LEAST_SIZE = 0.6
 
+/** Slope that no crown exceeds [–]. */
+const STEEPEST_CROWN = 0.4
+
 /** Cells of the lattice in 256 m that pieces of stones and grass are moved by, and those of crowns. */
 const CELLS = 36
 const CANOPY_CELLS = 3
@@ -149,4 +152,19 @@ export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
     footprint,
     lost: footprint.div(LOST).min(1)
   }
+}
+
+/**
+ * Slopes of crowns, no more than {@link STEEPEST_CROWN}: leaves let light through to the shaded side. As steep as they are: crowns that stand alone are black
+ * wedges with edges like a saw, and crests are dotted (*Terrain*, stills grass and scree).
+ */
+export function leaning(slope: Vec3): Vec3 {
+  const most = STEEPEST_CROWN
+  return slope.mul(
+    slope
+      .dot(slope)
+      .div(most * most)
+      .add(1)
+      .inverseSqrt()
+  )
 }

@@ -1,7 +1,7 @@
 import { Fn, If, float, mix, smoothstep, vec3 } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 import type { GroundMaps } from '../maps/GroundMaps'
-import { grainAt, type GroundDetail } from './grain'
+import { grainAt, leaning, type GroundDetail } from './grain'
 import type { MappedGround } from './mappedGround'
 import {
   groundClimate,
@@ -16,9 +16,6 @@ const DRY_GRASS = 1.5
 
 /** Slopes of sand over those of stones [–]. 0.05: a beach is of flat shards (*Terrain*, still shore). */
 const SAND_BUMP = 0.02
-
-/** Slope that no crown exceeds [–]. */
-const STEEPEST_CROWN = 0.4
 
 /** Mean square of the slopes of stones. */
 const GRAIN_VARIANCE = 0.3
@@ -179,21 +176,6 @@ export function groundSurface(
     grain: mapped === undefined ? slopes : slopes.add(mapped.slope.mul(mapped.share)),
     occlusion: either(occlusion, ground => ground.occlusion)
   }
-}
-
-/**
- * Slopes of crowns, no more than {@link STEEPEST_CROWN}: leaves let light through to the shaded side. As steep as they are: crowns that stand alone are black
- * wedges with edges like a saw, and crests are dotted (*Terrain*, stills grass and scree).
- */
-function leaning(slope: Vec3): Vec3 {
-  const most = STEEPEST_CROWN
-  return slope.mul(
-    slope
-      .dot(slope)
-      .div(most * most)
-      .add(1)
-      .inverseSqrt()
-  )
 }
 
 /**
