@@ -138,7 +138,8 @@ export function farTiles(
   grid: () => InstancedBufferGeometry,
   materialOf: (code: GroundDetail) => MeshStandardNodeMaterial
 ): TakeFar {
-  const meshes = ([0, 1] as const).map(
+  // Three draws what was made first first: what is near hides what is far.
+  const meshes = ([1, 0] as const).map(
     code => new FarTiles(terrain, grid(), materialOf(code), LEAST_FOOTPRINTS[code])
   )
   terrain.geometry.addEventListener('dispose', () => {
@@ -154,7 +155,7 @@ export function farTiles(
     const pixel = elements[15] === 1 ? 0 : 2 / Math.abs(elements[5]) / lines
     let left = tiles.slice(0, inView)
     const far: Tile[] = []
-    for (const mesh of meshes) {
+    for (const mesh of meshes.toReversed()) {
       left = mesh.take(left, { position, seaLevel, forward, pixel })
       write(mesh.geometry, mesh.tiles)
       far.push(...mesh.tiles)
