@@ -1,28 +1,21 @@
-import { Atmosphere, SkyLightProbe, SunDirectionalLight } from '@welkin/atmosphere'
 import {
   GridHeights,
   MountainHeights,
-  Terrain,
   TerrariumTiles,
   type HeightSource,
   type PageSource
 } from '@welkin/terrain'
-import { Matrix4, PerspectiveCamera, RenderTarget, Scene } from 'three'
-import type { WebGPURenderer } from 'three/webgpu'
+import { MathUtils } from 'three'
 import { setFlagsFromString } from 'node:v8'
 import { runInNewContext } from 'node:vm'
 import { randomNumbers } from '../../packages/terrain/test/randomNumbers'
-import { finished, nextFrame, release, type HeadlessDevice } from '../headless/device'
+import { finished, type HeadlessDevice } from '../headless/device'
 import { bytesOf, watchTextures } from './memory'
-
-const PLACE = { longitude: 1, latitude: 47 }
+import { TerrainBench, VIEWS } from './TerrainBench'
 
 /** Side of the local grid [cells], and of a tile [pixels]. */
 const GRID = 1024
 const TILE = 256
-
-/** Frames after which a picture that is not full has failed. */
-const MOST_FRAMES = 5000
 
 /** A flight of half an hour [s], how long a frame of it is [s], and times that memory is measured at. */
 const FLIGHT = 1800
@@ -37,7 +30,7 @@ const hills = (x: number, y: number): number =>
   500 + 250 * Math.sin(x) + 100 * Math.sin(3.1 * y) + 50 * Math.sin(7 * (x + y))
 
 /** Sources whose data is at hand: a function, a grid in memory, and tiles that are loaded from memory. */
-const sources: Record<string, () => HeightSource | PageSource> = {
+export const sources: Record<string, () => HeightSource | PageSource> = {
   function: () => new MountainHeights({ seed: 513 }),
   grid: () =>
     new GridHeights(
@@ -55,11 +48,18 @@ const sources: Record<string, () => HeightSource | PageSource> = {
           .split('/')
           .map(Number)
         const data = new Uint8ClampedArray(4 * TILE ** 2)
+        // Tables of sines: what is timed is no drawing of pixels.
+        const angle = (300 * 2 * Math.PI) / 2 ** z
+        const waves = (first: number, wave: (angle: number) => number): Float32Array =>
+          Float32Array.from({ length: TILE }, (_, i) => wave(angle * (first + i / TILE)))
+        const along = waves(x, a => 500 + 250 * Math.sin(a))
+        const down = waves(y, a => 100 * Math.sin(3.1 * a))
         for (let i = 0; i < TILE ** 2; i++) {
-          const along = (2 * Math.PI * (x + (i % TILE) / TILE)) / 2 ** z
-          const down = (2 * Math.PI * (y + Math.floor(i / TILE) / TILE)) / 2 ** z
-          const value = 32_768 + hills(300 * along, 300 * down)
-          data.set([value / 256, value % 256, (value % 1) * 256, 255], 4 * i)
+          const value = 32_768 + along[i % TILE] + down[Math.floor(i / TILE)]
+          data[4 * i] = value / 256
+          data[4 * i + 1] = value % 256
+          data[4 * i + 2] = (value % 1) * 256
+          data[4 * i + 3] = 255
         }
         return Promise.resolve({ width: TILE, height: TILE, data })
       }
@@ -88,58 +88,6 @@ export interface FlightMemory {
   heapBytes: number
 }
 
-/** A terrain in the light of sun and sky. */
-class FlightBench {
-  readonly #atmosphere = new Atmosphere({ frame: 'ecef' })
-  readonly #camera: PerspectiveCamera
-  readonly #scene = new Scene()
-  readonly #target: RenderTarget
-  readonly #axes = new Matrix4()
-  readonly terrain: Terrain
-
-  constructor(
-    readonly renderer: WebGPURenderer,
-    [width, height]: readonly [number, number],
-    source: HeightSource | PageSource
-  ) {
-    this.#camera = new PerspectiveCamera(60, width / height, 0.2, 1e8)
-    this.#target = new RenderTarget(width, height)
-    const sun = new SunDirectionalLight(this.#atmosphere)
-    this.terrain = new Terrain(this.#atmosphere, source)
-    this.#scene.add(sun, sun.target, new SkyLightProbe(this.#atmosphere), this.terrain)
-    this.#atmosphere.date = new Date('2026-06-21T12:00:00Z')
-  }
-
-  look(longitude: number, latitude: number, height: number, heading: number, pitch: number): void {
-    const { ellipsoid } = this.#atmosphere
-    const camera = this.#camera
-    const ground = this.terrain.heightAt(longitude, latitude)
-    ellipsoid.geodeticToECEF({ longitude, latitude, height: ground + height }, camera.position)
-    camera.quaternion.setFromRotationMatrix(ellipsoid.localYUpFrame(camera.position, this.#axes))
-    camera.rotateY(heading)
-    camera.rotateX(pitch)
-    camera.near = Math.min(height / 10, 1e4)
-    camera.updateProjectionMatrix()
-    camera.updateMatrixWorld()
-  }
-
-  draw(): void {
-    nextFrame()
-    this.renderer.setRenderTarget(this.#target)
-    this.renderer.render(this.#scene, this.#camera)
-    this.renderer.setRenderTarget(null)
-  }
-
-  dispose(): void {
-    this.terrain.dispose()
-    this.#atmosphere.dispose()
-    this.#target.dispose()
-  }
-}
-
-/** Lets promises and timers of loaders run. */
-const turn = (): Promise<void> => new Promise(resolve => setTimeout(resolve))
-
 /** Times the first full picture at eye height from sources whose data is at hand, atmosphere and shaders included. */
 export async function timeFirstPictures(
   device: HeadlessDevice,
@@ -148,21 +96,14 @@ export async function timeFirstPictures(
   const pictures: FirstPicture[] = []
   for (const [source, make] of Object.entries(sources)) {
     const heights = make()
-    const renderer = await device.renderer(...size, { reversedDepthBuffer: true })
-    renderer.highPrecision = true
+    const bench = await TerrainBench.open(device, size)
+    bench.castsShadow = false
     const start = performance.now()
-    const bench = new FlightBench(renderer, size, heights)
-    let frames = 0
-    for (; !bench.terrain.isFull && frames < MOST_FRAMES; frames++) {
-      bench.look(PLACE.longitude, PLACE.latitude, 2, 0, -0.07)
-      bench.draw()
-      await finished(renderer)
-      await turn()
-    }
-    if (!bench.terrain.isFull) throw new Error(`bench: no full picture of the source ${source}`)
+    bench.add(heights)
+    bench.look(VIEWS[0])
+    const frames = await bench.fill()
     pictures.push({ source, ms: performance.now() - start, frames })
     bench.dispose()
-    release(renderer)
   }
   return pictures
 }
@@ -174,13 +115,20 @@ function heapBytes(): number {
   return process.memoryUsage().heapUsed
 }
 
-/** Flies anywhere, from 2 m to 20,000 km high, for half an hour, and measures memory on the way. */
-export async function measureFlight(device: HeadlessDevice): Promise<FlightMemory[]> {
-  const size = [128, 72] as const
-  const renderer = await device.renderer(...size, { reversedDepthBuffer: true })
-  renderer.highPrecision = true
+/**
+ * Flies anywhere, from 2 m to 20,000 km high, for half an hour, and measures memory on the way.
+ *
+ * @param report - Called with each measurement, as it is made.
+ */
+export async function measureFlight(
+  device: HeadlessDevice,
+  report: (memory: FlightMemory) => void
+): Promise<FlightMemory[]> {
+  const bench = await TerrainBench.open(device, [128, 72])
+  const { renderer } = bench
   const alive = watchTextures((renderer.backend as unknown as { device: GPUDevice }).device)
-  const bench = new FlightBench(renderer, size, sources.function())
+  bench.castsShadow = false
+  bench.add(sources.function())
   const random = randomNumbers(7)
   const frames = FLIGHT / STEP
   const measured: FlightMemory[] = []
@@ -197,12 +145,19 @@ export async function measureFlight(device: HeadlessDevice): Promise<FlightMemor
     const way = Math.min((speed * STEP * 10 ** power) / 111_000, 5)
     longitude = ((longitude - way * Math.sin(heading) + 540) % 360) - 180
     latitude = Math.min(Math.max(latitude + way * Math.cos(heading), -85), 85)
-    bench.look(longitude, latitude, 10 ** power, heading, pitch)
+    bench.look({
+      name: 'flight',
+      longitude,
+      latitude,
+      height: 10 ** power,
+      heading: MathUtils.radToDeg(heading),
+      pitch: MathUtils.radToDeg(pitch)
+    })
     bench.draw()
     if (frame % 64 === 0) await finished(renderer)
     if (frame % (frames / MEASURED) !== 0) continue
     const ofTerrain = [...alive].filter(({ label }) => label.startsWith('Welkin.Terrain'))
-    measured.push({
+    const memory = {
       minutes: (frame * STEP) / 60,
       frames: frame,
       pages: bench.terrain.pages.count,
@@ -210,25 +165,29 @@ export async function measureFlight(device: HeadlessDevice): Promise<FlightMemor
       textures: alive.size,
       geometries: renderer.info.memory.geometries,
       heapBytes: heapBytes()
-    })
+    }
+    measured.push(memory)
+    report(memory)
   }
   bench.dispose()
-  release(renderer)
   return measured
 }
 
 /** Lines of a report. */
-export function flightLines(first: FirstPicture[], flight: FlightMemory[]): string {
-  const megabytes = (bytes: number): string => `${(bytes / 1e6).toFixed(1)} MB`
-  return [
-    ...first.map(
+export const firstPictureLines = (pictures: FirstPicture[]): string =>
+  pictures
+    .map(
       ({ source, ms, frames }) =>
         `first full picture, ${source.padEnd(8)}   ${ms.toFixed(0)} ms, ${frames} frames`
-    ),
-    ...flight.map(
-      ({ minutes, pages, terrainBytes, textures, geometries, heapBytes }) =>
-        `in flight, ${String(minutes).padStart(2)} min   ${pages} pages   ${megabytes(terrainBytes)} of ${textures} textures` +
-        `   ${geometries} geometries   heap ${megabytes(heapBytes)}`
     )
-  ].join('\n')
+    .join('\n')
+
+/** Line of a report. */
+export function flightLine(memory: FlightMemory): string {
+  const { minutes, pages, terrainBytes, textures, geometries, heapBytes } = memory
+  const megabytes = (bytes: number): string => `${(bytes / 1e6).toFixed(1)} MB`
+  return (
+    `in flight, ${String(minutes).padStart(2)} min   ${pages} pages   ${megabytes(terrainBytes)} of ${textures} textures` +
+    `   ${geometries} geometries   heap ${megabytes(heapBytes)}`
+  )
 }

@@ -4,7 +4,7 @@ import { HeadlessDevice } from '../headless/device'
 import { airLine, PATHS, timeAir, timeBake, timeFirstFrame } from './air'
 import { cloudLine, timeClouds, timeNoise } from './clouds'
 import { timeEnvironment } from './environment'
-import { flightLines, measureFlight, timeFirstPictures } from './flight'
+import { firstPictureLines, flightLine, measureFlight, timeFirstPictures } from './flight'
 import { lightningLine, timeLightning } from './lightning'
 import { crackLines, findCracks } from './cracks'
 import { measureCloudMemory } from './memory'
@@ -93,12 +93,14 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
     log(vegetationLine(vegetation))
     return { terrain, vegetation }
   },
+  async firstPictures() {
+    const firstPictures = await timeFirstPictures(device, size)
+    log(firstPictureLines(firstPictures))
+    return { firstPictures }
+  },
   async flight() {
-    const first = await timeFirstPictures(device, size)
-    log(flightLines(first, []))
-    const flight = await measureFlight(device)
-    log(flightLines([], flight))
-    return { firstPictures: first, flight }
+    const flight = await measureFlight(device, memory => log(flightLine(memory)))
+    return { flight }
   },
   async cracks() {
     const search = await findCracks(device, 10_000, 95, log)

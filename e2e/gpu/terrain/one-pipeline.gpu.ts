@@ -1,5 +1,5 @@
 import { Atmosphere, SkyLightProbe, SunDirectionalLight } from '@welkin/atmosphere'
-import { MountainHeights, Terrain } from '@welkin/terrain'
+import { farTiles, MountainHeights, Terrain } from '@welkin/terrain'
 import { Matrix4, PerspectiveCamera, Scene } from 'three'
 import { gpuTest } from '../harness/gpu-test'
 
@@ -13,7 +13,8 @@ gpuTest(
     const { ellipsoid } = atmosphere
     const terrain = new Terrain(atmosphere, new MountainHeights({ seed: 513 }), {
       resolution: 8,
-      pageMemory: 6
+      pageMemory: 6,
+      far: farTiles
     })
     const sun = new SunDirectionalLight(atmosphere)
     const scene = new Scene()

@@ -1,5 +1,5 @@
 import { Matrix4, Quaternion, Vector3 } from 'three'
-import type { Camera, Scene, Texture } from 'three'
+import type { Camera, InstancedBufferGeometry, Scene, Texture } from 'three'
 import type { Renderer } from 'three/webgpu'
 import { checkAtmosphere, checkRange, withDefaults, type Atmosphere } from '@welkin/atmosphere'
 import { checkNonNegative, fail, setOptions } from '@welkin/geo'
@@ -11,7 +11,8 @@ import { grainTexture } from './surface/grainTexture'
 import { GroundMesh } from './rays/GroundMesh'
 import type { GroundMaps } from './surface/maps/GroundMaps'
 import type { GroundMask } from './surface/maps/GroundMask'
-import { terrainMaterial } from './surface/terrainMaterial'
+import type { GroundDetail } from './surface/tsl/grain'
+import { isShadowPass, terrainMaterial } from './surface/terrainMaterial'
 import {
   checkFixed,
   checkSource,
@@ -24,13 +25,14 @@ import { TerrainUniforms } from './TerrainUniforms'
 import type { TerrainHorizon } from './tiles/TerrainHorizon'
 import { figureOf, isFlat, poleOf, worldToGround, type Figure } from './tiles/cpu/figure'
 import { viewerOf } from './tiles/cpu/viewer'
+import type { DrawnTiles, TakeFar } from './tiles/FarTiles'
+import type { Tile } from './tiles/Tile'
 import { tileGrid } from './tiles/tileGrid'
 import { ellipsoidInShader, planeInShader } from './tiles/tsl/figure'
 import { writeTiles } from './tiles/writeTiles'
 
 /** Least height of the viewer above the ground in the choice of tiles [m]. */
 const LEAST_CLEARANCE = 0.5
-
 /** Depth of skirts where no page is missing [cells]: only rounding is hidden. With their width they slope by 68°, more than procedural ground does. */
 const SHALLOW = 1
 
@@ -75,6 +77,8 @@ export class Terrain extends GroundMesh {
   readonly #uniforms: TerrainUniforms
   readonly #tiles: PagedTiles
   readonly #grain: Texture
+  readonly #takeFar: TakeFar | undefined
+  #drawn: DrawnTiles = { tiles: [], inView: 0 }
   #shadowDistance = 0
   #camera: Camera | null = null
 
@@ -92,15 +96,12 @@ export class Terrain extends GroundMesh {
     const uniforms = new TerrainUniforms(figure)
     const tiles = new PagedTiles(source, figure, all, () => this.onChange?.())
     const grain = grainTexture()
-    const material = terrainMaterial(
-      atmosphere,
-      tiles.pages.atlas,
-      grain,
-      uniforms,
-      isFlat(figure) ? planeInShader : ellipsoidInShader,
-      all
-    )
-    super(tileGrid(all.resolution, CAPACITY), material, uniforms)
+    const inShader = isFlat(figure) ? planeInShader : ellipsoidInShader
+    const grid = () => tileGrid(all.resolution, CAPACITY)
+    const materialOf = (code: GroundDetail) =>
+      terrainMaterial(atmosphere, tiles.pages.atlas, grain, uniforms, inShader, all, code)
+    super(grid(), materialOf(2), uniforms)
+    this.#takeFar = all.far?.(this, grid, materialOf)
     this.#figure = figure
     this.#uniforms = uniforms
     this.#tiles = tiles
@@ -192,8 +193,7 @@ export class Terrain extends GroundMesh {
   }
 
   /**
-   * Chooses tiles for a camera and draws pages that are missing. Drawing the terrain does this by itself; call it for a full
-   * picture at once:
+   * Chooses tiles for a camera and draws missing pages. Drawing the terrain does this by itself; call it for a full picture at once:
    *
    * ```ts
    * terrain.update(renderer, camera, Infinity)
@@ -233,7 +233,11 @@ export class Terrain extends GroundMesh {
     this.#uniforms.referenceECEF(reference)
     this.maps?.update(renderer)
     this.mask?.update(figure, reference)
-    writeTiles(this.geometry, selection.tiles, positionECEF, reference, ground, tree.ranges)
+    const write = (geometry: InstancedBufferGeometry, of: readonly Tile[]): void =>
+      writeTiles(geometry, of, positionECEF, reference, ground, tree.ranges)
+    this.#drawn =
+      this.#takeFar?.(selection, viewer, camera, fromWorld, renderer, write) ?? selection
+    write(this.geometry, this.#drawn.tiles)
     // The ground's axes at the camera.
     matrix.copy(fromWorld).invert().decompose(subpoint, quaternion, scale)
     this.matrixWorld.compose(positionWorld, quaternion, scale)
@@ -242,12 +246,11 @@ export class Terrain extends GroundMesh {
 
   /** Chooses tiles before three draws them; shadow maps are drawn with those of the viewer, out of view too. */
   override onBeforeRender(renderer: unknown, scene: Scene, camera: Camera): void {
-    const pass = scene.overrideMaterial as { isShadowPassMaterial?: boolean } | null
-    const isShadow = pass?.isShadowPassMaterial === true
+    const isShadow = isShadowPass(scene.overrideMaterial)
     if (!isShadow && (this.#camera === null || camera === this.#camera))
       this.update(renderer as Renderer, camera)
-    const { chosen, inView } = this.tileCount
-    this.geometry.instanceCount = isShadow ? chosen : inView
+    const { tiles, inView } = this.#drawn
+    this.geometry.instanceCount = isShadow ? tiles.length : inView
   }
 
   /** Frees geometry, material and pages; atmosphere and source are shared. */

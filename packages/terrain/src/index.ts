@@ -1,5 +1,7 @@
 export { Terrain } from './Terrain'
 export type { TerrainOptions } from './TerrainOptions'
+export { farTiles } from './tiles/FarTiles'
+export type { TakeFar } from './tiles/FarTiles'
 export { TerrainHorizon } from './tiles/TerrainHorizon'
 export { Walker } from './walk/Walker'
 export type { WalkerOptions, WalkerState } from './walk/Walker'

@@ -10,7 +10,7 @@ import {
 import type { HeightSample } from '../heights/HeightSource'
 import type { PageRequest, PageSource } from '../pages/PageSource'
 import { geographicGradient, geographicPlace, type GeographicPlace } from './geographic'
-import { pagePlaces } from './pagePlaces'
+import { fillSmooth, pagePlaces } from './pagePlaces'
 import { fillHoles, halved, type Raster } from './Raster'
 import {
   OVERSHOOT,
@@ -208,13 +208,18 @@ export class GridHeights implements PageSource {
     const { width, height, values } = this.#levels[level]
     const shrink = 2 ** -level
     const heights = new Float32Array(side * side)
-    for (let i = 0; i < heights.length; i++) {
+    const insideAt = (i: number): number => {
       const x = places.x[i] * shrink - 0.5
       const y = places.y[i] * shrink - 0.5
       const isInside = x >= 1 && y >= 1 && x < width - 2 && y < height - 2
-      heights[i] = isInside
-        ? valueInside(values, width, x, y)
-        : this.#sample(places.x[i], places.y[i], level, raster).value
+      return isInside ? valueInside(values, width, x, y) : NaN
+    }
+    if (fillSmooth(places, side, [shrink, shrink], insideAt, heights)) return heights
+    for (let i = 0; i < heights.length; i++) {
+      const inside = insideAt(i)
+      heights[i] = Number.isNaN(inside)
+        ? this.#sample(places.x[i], places.y[i], level, raster).value
+        : inside
     }
     return heights
   }
@@ -249,11 +254,14 @@ export class GridHeights implements PageSource {
     const insideY = MathUtils.clamp(y, 0, height)
     const isInside = insideX === x && insideY === y
     const isFlat = this.#isFlat
-    const parallel = isFlat ? 1 : this.#radii.x * Math.cos(this.#north - y * this.#stepY)
-    const wide = this.#stepX * parallel
     const tall = this.#stepY * (isFlat ? 1 : this.#radii.x)
-    const distance = isInside ? 0 : Math.hypot((x - insideX) * wide, (y - insideY) * tall)
-    if (distance >= this.#fade) {
+    const down = (y - insideY) * tall
+    const isFar = Math.abs(down) >= this.#fade
+    const parallel =
+      isFlat || isInside || isFar ? 1 : this.#radii.x * Math.cos(this.#north - y * this.#stepY)
+    const wide = this.#stepX * parallel
+    const distance = isInside ? 0 : Math.hypot((x - insideX) * wide, down)
+    if (isFar || distance >= this.#fade) {
       target.value = this.#outside
       target.x = target.y = 0
       return target

@@ -19,7 +19,7 @@ import {
   POLAR,
   tileKey
 } from './mercator'
-import { pagePlaces, type PagePlaces } from './pagePlaces'
+import { fillSmooth, pagePlaces, type PagePlaces } from './pagePlaces'
 import { OVERSHOOT, type RasterSample } from './RasterSampler'
 import { TilePyramid, type FindTile, type HeightTile } from './TilePyramid'
 import {
@@ -52,6 +52,9 @@ const DEFAULTS: Required<HeightTilesOptions> = {
 
 /** Columns of the map's edge whose mean is the height of a pole. */
 const EDGE_COLUMNS = Array.from({ length: 16 }, (_, i) => (i + 0.5) / 16)
+
+/** Steps between the places of a page whose tiles are looked up. */
+const STRIDE = 8
 
 const place: GeographicPlace = { longitude: 0, latitude: 0 }
 const near: RasterSample = { value: 0, x: 0, y: 0 }
@@ -186,15 +189,24 @@ export class HeightTiles implements PageSource {
     const z = this.#store.levelOf(spacing)
     const held = new Map<number, HeightTile>()
     const find: FindTile = key => held.get(key) ?? this.#store.peek(key)
-    const places = pagePlaces(request, (at, target) => this.#project(at, target), 1)
-    const keys = this.#keysOf(z, places)
+    const placesOf = (): PagePlaces =>
+      pagePlaces(request, (at, target) => this.#project(at, target), 1)
+    const keys = this.#keysOf(z, placesOf(), side)
     const fill = (): Float32Array => {
       const heights = new Float32Array(side * side)
+      const places = placesOf()
+      const between = this.#pyramid.heightsBetween(z, places, find)
+      const isWhole = [...keys].every(key => find(key)?.hasHoles === false)
+      const scale = this.#pyramid.size * 2 ** z
+      const pixels = [this.#store.wide * scale, scale] as const
+      const smoothAt = (i: number): number =>
+        between !== null && isWhole && !this.#isPolar(places.y[i]) ? between(i) : NaN
+      if (fillSmooth(places, side, pixels, smoothAt, heights)) return heights
       for (let i = 0; i < heights.length; i++) {
-        const [x, y] = [places.x[i], places.y[i]]
-        heights[i] = this.#isPolar(y)
-          ? this.#sample(z, x, y, find, near).value
-          : this.#pyramid.valueAt(z, x, y, find)
+        heights[i] =
+          between === null || this.#isPolar(places.y[i])
+            ? this.#sample(z, places.x[i], places.y[i], find, near).value
+            : between(i)
       }
       return heights
     }
@@ -230,15 +242,27 @@ export class HeightTiles implements PageSource {
     target.y = this.#rowOf(place.latitude)
   }
 
-  /** Keys of the tiles whose pixels some places need. */
-  #keysOf(z: number, { x, y }: PagePlaces): Set<number> {
+  /** Keys of the tiles whose pixels some places need: of every so many in a row and column, and about them. */
+  #keysOf(z: number, { x, y, isSmooth }: PagePlaces, side: number): Set<number> {
     const { size, coarsest } = this.#pyramid
-    const about = new TilesAbout(2 / size, this.#store.wide)
+    const { wide } = this.#store
+    const stride = isSmooth ? STRIDE : 1
+    // Half of the way to the next in the diagonal, at most.
+    const middle = (side * side) >> 1
+    const reach = (values: Float64Array, unit: number): number =>
+      unit *
+      (Math.abs(values[middle + 1] - values[middle]) +
+        Math.abs(values[middle + side] - values[middle]))
+    const around = isSmooth ? STRIDE * Math.max(reach(x, wide), reach(y, 1)) * 2 ** z : 0
+    const about = new TilesAbout(2 / size + around, wide)
     const edges = new Set<number>()
-    for (let i = 0; i < x.length; i++) {
-      if (y[i] >= 0 && y[i] <= 1) about.add(z, x[i], y[i])
-      else edges.add(y[i] < 0 ? 0 : 1)
-      if (this.#isPolar(y[i])) about.add(coarsest, x[i], y[i])
+    for (let row = 0; row < side; row += stride) {
+      for (let column = 0; column < side; column += stride) {
+        const i = row * side + column
+        if (y[i] >= 0 && y[i] <= 1) about.add(z, x[i], y[i])
+        else edges.add(y[i] < 0 ? 0 : 1)
+        if (this.#isPolar(y[i])) about.add(coarsest, x[i], y[i])
+      }
     }
     for (const y of edges) for (const column of EDGE_COLUMNS) about.add(coarsest, column, y)
     return about.keys

@@ -89,10 +89,11 @@ export class ImageTiles implements PageImages {
   imageOf(request: PageRequest): PageImage {
     const { side } = request
     const z = this.#store.levelOf(request.spacing)
-    const { x, y } = this.#placesOf(request)
+    const places = this.#placesOf(request)
+    const { x, y } = places
     let isWhole = true
     this.#lastZ = -1
-    for (const key of this.#keysOf(z, { x, y })) {
+    for (const key of this.#keysOf(z, places)) {
       this.#store.get(key)
       isWhole &&= this.#store.isSettled(key)
     }

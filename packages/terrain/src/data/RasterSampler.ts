@@ -75,22 +75,30 @@ export function sampleRaster(
 export function valueInside(values: Float32Array, stride: number, x: number, y: number): number {
   const column = Math.floor(x)
   const row = Math.floor(y)
-  setWeights(x - column)
-  const first = (row - 1) * stride + column - 1
-  for (let j = 0; j < 4; j++) {
-    const i = first + j * stride
-    rowValues[j] =
-      weights[0] * values[i] +
-      weights[1] * values[i + 1] +
-      weights[2] * values[i + 2] +
-      weights[3] * values[i + 3]
-  }
-  setWeights(y - row)
+  const t = x - column
+  const a = ((2 - t) * t - 1) * t
+  const b = (3 * t - 5) * t * t + 2
+  const c = ((4 - 3 * t) * t + 1) * t
+  const d = (t - 1) * t * t
+  const u = y - row
+  const i = (row - 1) * stride + column - 1
+  const j = i + stride
+  const k = j + stride
+  const l = k + stride
   return (
-    weights[0] * rowValues[0] +
-    weights[1] * rowValues[1] +
-    weights[2] * rowValues[2] +
-    weights[3] * rowValues[3]
+    (((2 - u) * u - 1) *
+      u *
+      (a * values[i] + b * values[i + 1] + c * values[i + 2] + d * values[i + 3]) +
+      ((3 * u - 5) * u * u + 2) *
+        (a * values[j] + b * values[j + 1] + c * values[j + 2] + d * values[j + 3]) +
+      ((4 - 3 * u) * u + 1) *
+        u *
+        (a * values[k] + b * values[k + 1] + c * values[k + 2] + d * values[k + 3]) +
+      (u - 1) *
+        u *
+        u *
+        (a * values[l] + b * values[l + 1] + c * values[l + 2] + d * values[l + 3])) /
+    4
   )
 }
 

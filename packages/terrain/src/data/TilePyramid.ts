@@ -1,4 +1,5 @@
 import { tileKey } from './mercator'
+import type { PagePlaces } from './pagePlaces'
 import { sampleRaster, valueInside, type RasterSample } from './RasterSampler'
 
 /** Heights of a tile, row by row from its north-west corner [m]; NaN where there is none. */
@@ -7,7 +8,8 @@ export interface HeightTile {
   readonly hasHoles: boolean
 }
 
-const scratch: RasterSample = { value: 0, x: 0, y: 0 }
+/** Pixels that are copied for a page, per place of it. */
+const MOST_PIXELS = 4
 
 /** Finds a tile by its key; undefined if it is not there. */
 export type FindTile = (key: number) => HeightTile | undefined
@@ -43,8 +45,7 @@ export class TilePyramid {
    * @returns Value [m] and slopes per width of the map.
    */
   sample(z: number, x: number, y: number, find: FindTile, target: RasterSample): RasterSample {
-    if (find !== this.#find) this.#lastZ = -1
-    this.#find = find
+    this.#begin(find)
     const scale = this.size * 2 ** z
     const column = x * this.wide * scale - 0.5
     const row = y * scale - 0.5
@@ -54,21 +55,48 @@ export class TilePyramid {
     return target
   }
 
-  /** Height alone, as of `sample`. */
-  valueAt(z: number, x: number, y: number, find: FindTile): number {
+  /**
+   * Pixels about all places of a page, and a function of the height between them: those of a tile if it has all of them, else a copy. Null if there were
+   * more than {@link MOST_PIXELS} times as many as places, as across the antimeridian.
+   */
+  heightsBetween(
+    z: number,
+    { x, y }: PagePlaces,
+    find: FindTile
+  ): ((place: number) => number) | null {
+    this.#begin(find)
     const { size } = this
-    if (find !== this.#find) this.#lastZ = -1
-    this.#find = find
     const scale = size * 2 ** z
-    const column = x * this.wide * scale - 0.5
-    const row = y * scale - 0.5
-    const left = column - Math.floor(column / size) * size
-    const top = row - Math.floor(row / size) * size
-    if (left >= 1 && top >= 1 && left < size - 2 && top < size - 2) {
-      const tile = this.#tileAt(z, column, row)
-      if (tile?.hasHoles === false) return valueInside(tile.heights, size, left, top)
+    const wide = this.wide * scale
+    let [west, east, north, south] = [Infinity, -Infinity, Infinity, -Infinity]
+    for (let i = 0; i < x.length; i++) {
+      if (x[i] < west) west = x[i]
+      if (x[i] > east) east = x[i]
+      if (y[i] < north) north = y[i]
+      if (y[i] > south) south = y[i]
     }
-    return this.sample(z, x, y, find, scratch).value
+    let left = Math.floor(west * wide - 0.5) - 1
+    let top = Math.floor(north * scale - 0.5) - 1
+    let width = Math.floor(east * wide - 0.5) + 3 - left
+    const height = Math.floor(south * scale - 0.5) + 3 - top
+    if (width * height > MOST_PIXELS * x.length) return null
+    const tile = this.#tileAt(z, left, top)
+    const isInside = (from: number, count: number): boolean =>
+      Math.floor(from / size) === Math.floor((from + count - 1) / size)
+    let values: Float32Array
+    if (tile?.hasHoles === false && isInside(left, width) && isInside(top, height)) {
+      values = tile.heights
+      left = Math.floor(left / size) * size
+      top = Math.floor(top / size) * size
+      width = size
+    } else {
+      values = new Float32Array(width * height)
+      for (let n = 0; n < values.length; n++) {
+        const row = Math.floor(n / width)
+        values[n] = this.#pixelAt(z, left + n - row * width, top + row)
+      }
+    }
+    return i => valueInside(values, width, x[i] * wide - 0.5 - left, y[i] * scale - 0.5 - top)
   }
 
   /** Forgets the tile that was found last. */
@@ -76,6 +104,11 @@ export class TilePyramid {
     this.#find = () => undefined
     this.#last = undefined
     this.#lastZ = -1
+  }
+
+  #begin(find: FindTile): void {
+    if (find !== this.#find) this.#lastZ = -1
+    this.#find = find
   }
 
   #tileAt(z: number, column: number, row: number): HeightTile | undefined {

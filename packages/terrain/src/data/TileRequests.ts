@@ -65,12 +65,14 @@ export class TileRequests<T> {
         reject(abortReason(signal))
         return
       }
+      // A page waits for many tiles with one signal, which Node would warn of.
+      const given = AbortSignal.any([signal])
       const request = this.#requestOf(key)
       request.priority = Math.min(request.priority, priority)
       request.order = ++this.#calls
       const forget = (): void => {
         request.waiters.delete(waiter)
-        signal.removeEventListener('abort', leave)
+        given.removeEventListener('abort', leave)
       }
       const leave = (): void => {
         forget()
@@ -88,7 +90,7 @@ export class TileRequests<T> {
         }
       }
       request.waiters.add(waiter)
-      signal.addEventListener('abort', leave)
+      given.addEventListener('abort', leave)
       this.#fill()
     })
   }

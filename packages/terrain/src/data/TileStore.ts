@@ -267,6 +267,8 @@ export class TilesAbout {
       if (key !== this.#last) keys.add((this.#last = key))
       return
     }
-    for (const i of [left, right]) for (const j of [top, bottom]) keys.add(tileKey(z, i, j, wide))
+    for (let i = left; i <= right; i++) {
+      for (let j = top; j <= bottom; j++) keys.add(tileKey(z, i, j, wide))
+    }
   }
 }

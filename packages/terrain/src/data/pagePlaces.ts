@@ -1,25 +1,33 @@
 import { Vector3 } from 'three'
 import type { PageRequest } from '../pages/PageSource'
 
-/** Steps between places that are projected exactly. */
-const BLOCK = 10
+/** Steps between places that are projected exactly, at most. */
+const BLOCK = 12
 
-/** Longest distance of exact places between which the others are interpolated: within 0.1 m at 45° of latitude and 0.5 m at 80° [m]. */
-const LONGEST = 2000
-
-/** Sine of the latitude up to which places between exact ones are interpolated [–]. */
-const LINEAR_TO = 0.98
+/** Greatest error of a place between exact ones: so much [m], or so much of a page's steps [–]. */
+const TOLERANCE = 1e-3
+const TOLERANCE_OF_STEP = 1e-4
 
 /** Coordinates of a page's places on a map. */
 export interface PagePlaces {
   readonly x: Float64Array
   readonly y: Float64Array
+  /** True where places are interpolated. */
+  readonly isSmooth: boolean
 }
 
 const position = new Vector3()
+const at = { x: 0, y: 0 }
+/** Arrays that all pages share: they are read before the next is asked for. */
+let x = new Float64Array(0)
+let y = new Float64Array(0)
 
 /**
- * Places of a page on a map.
+ * Places of a page on a map, in arrays that the next call fills anew: cubic interpolation of exact ones, to 1 mm or a ten-thousandth
+ * of its steps, where the page is not too large for it, or too near a pole.
+ *
+ * With h the distance of exact places and ρ that of the page to the planet's axis, the error is at most h⁴ / 2ρ³: the fourth derivative of longitude is
+ * about 6 / ρ⁴, a 24th of which counts between the outermost of four nodes, twice for both directions.
  *
  * @param project - Leaves the map's coordinates of a place on the ellipsoid in `x` and `y` of the target.
  * @param period - Width of the map, at which columns jump.
@@ -29,50 +37,146 @@ export function pagePlaces(
   project: (positionECEF: Vector3, target: { x: number; y: number }) => void,
   period: number
 ): PagePlaces {
-  const x = new Float64Array(side * side)
-  const y = new Float64Array(side * side)
-  const at = { x: 0, y: 0 }
-  const put = (column: number, row: number): void => {
-    project(placeOf(column, row, position), at)
-    x[row * side + column] = at.x
-    y[row * side + column] = at.y
+  if (x.length !== side * side) {
+    x = new Float64Array(side * side)
+    y = new Float64Array(side * side)
   }
-  const nodes: number[] = []
-  for (let i = 0; i < side - 1; i += BLOCK) nodes.push(i)
-  nodes.push(side - 1)
   placeOf(side >> 1, side >> 1, position)
-  let isLinear = BLOCK * spacing < LONGEST && Math.abs(position.z) < LINEAR_TO * position.length()
-  if (isLinear) {
-    for (const row of nodes) for (const column of nodes) put(column, row)
-    const first = x[0]
-    isLinear = nodes.every(row =>
-      nodes.every(column => Math.abs(x[row * side + column] - first) < period / 2)
-    )
+  const axis = Math.max(Math.hypot(position.x, position.y) - side * spacing, 0)
+  const tolerance = Math.max(TOLERANCE, TOLERANCE_OF_STEP * spacing)
+  if ((BLOCK * spacing) ** 4 < 2 * tolerance * axis ** 3) {
+    const weights = cubicWeights(side, BLOCK)
+    const { nodes } = weights
+    const nodesX = new Float64Array(nodes.length ** 2)
+    const nodesY = new Float64Array(nodesX.length)
+    let isWhole = true
+    let n = 0
+    for (const row of nodes) {
+      for (const column of nodes) {
+        project(placeOf(column, row, position), at)
+        nodesX[n] = at.x
+        nodesY[n] = at.y
+        isWhole &&= Math.abs(at.x - nodesX[0]) < period / 2
+        n++
+      }
+    }
+    if (isWhole) {
+      interpolate(nodesX, weights, x)
+      interpolate(nodesY, weights, y)
+      return { x, y, isSmooth: true }
+    }
   }
-  if (!isLinear) {
-    for (let row = 0; row < side; row++)
-      for (let column = 0; column < side; column++) put(column, row)
-    return { x, y }
+  for (let n = 0; n < x.length; n++) {
+    const row = Math.floor(n / side)
+    project(placeOf(n - row * side, row, position), at)
+    x[n] = at.x
+    y[n] = at.y
   }
-  for (const values of [x, y]) {
-    // Along the rows of nodes first, then between these rows.
-    for (const row of nodes) spread(values, row * side, 1, nodes)
-    for (let column = 0; column < side; column++) spread(values, column, side, nodes)
-  }
-  return { x, y }
+  return { x, y, isSmooth: false }
 }
 
-/** Fills a line linearly between its nodes. */
-function spread(
+/** Steps of a page's heights per pixel of the data in the way between heights that are found exactly: a twelfth. */
+const FINENESS = 12
+
+/**
+ * Heights of a page: where its steps are much smaller than pixels of the data those of every so many are found, and the others by cubic interpolation,
+ * within a thousandth of the differences of neighbouring pixels.
+ *
+ * @param width - Pixels per unit of `x`, `height` per unit of `y`.
+ * @param heightAt - Height of a place by its number; NaN beside smooth data.
+ * @returns False if there is one, and nothing has been filled.
+ */
+export function fillSmooth(
+  { x, y, isSmooth }: PagePlaces,
+  side: number,
+  [width, height]: readonly [number, number],
+  heightAt: (place: number) => number,
+  heights: Float32Array
+): boolean {
+  const middle = (side * side) >> 1
+  const pixels = (next: number): number =>
+    Math.max(
+      Math.abs(x[middle + next] - x[middle]) * width,
+      Math.abs(y[middle + next] - y[middle]) * height
+    )
+  const stride = Math.min(Math.floor(1 / FINENESS / Math.max(pixels(1), pixels(side))), BLOCK)
+  if (!isSmooth || stride < 2) return false
+  const weights = cubicWeights(side, stride)
+  const { nodes } = weights
+  const values = new Float64Array(nodes.length ** 2)
+  let n = 0
+  for (const row of nodes) {
+    for (const column of nodes) {
+      const value = heightAt(row * side + column)
+      if (Number.isNaN(value)) return false
+      values[n++] = value
+    }
+  }
+  interpolate(values, weights, heights)
+  return true
+}
+
+/** Weights of four nodes at each of `side` places, and the first of these nodes (Lagrange). */
+interface Weights {
+  readonly side: number
+  readonly nodes: readonly number[]
+  readonly first: Int32Array
+  readonly weights: Float64Array
+}
+
+/** Weights by the places from a node to the next, for pages of the side that was asked for last. */
+let made: Weights[] = []
+
+/** @param step - Places from a node to the next; the last is at the end. */
+function cubicWeights(side: number, step: number): Weights {
+  if (made.find(Boolean)?.side !== side) made = []
+  return (made[step] ??= makeWeights(side, Math.min(step, Math.floor((side - 1) / 3))))
+}
+
+function makeWeights(side: number, stride: number): Weights {
+  const nodes: number[] = []
+  for (let i = 0; i < side - 1; i += stride) nodes.push(i)
+  nodes.push(side - 1)
+  const first = new Int32Array(side)
+  const weights = new Float64Array(4 * side)
+  for (let i = 0; i < side; i++) {
+    const block = Math.min(Math.max(Math.floor(i / stride) - 1, 0), nodes.length - 4)
+    first[i] = block
+    const four = nodes.slice(block, block + 4)
+    for (const [k, node] of four.entries()) {
+      weights[4 * i + k] = four.reduce(
+        (product, other) => (other === node ? product : (product * (i - other)) / (node - other)),
+        1
+      )
+    }
+  }
+  return { side, nodes, first, weights }
+}
+
+/** Fills a square by the nodes of a coarser one: along their rows, then between these. */
+function interpolate(
   values: Float64Array,
-  start: number,
-  stride: number,
-  nodes: readonly number[]
+  { side, nodes, first, weights }: Weights,
+  target: Float64Array | Float32Array
 ): void {
-  for (let n = 1; n < nodes.length; n++) {
-    const [from, to] = [nodes[n - 1], nodes[n]]
-    const first = values[start + from * stride]
-    const step = (values[start + to * stride] - first) / (to - from)
-    for (let i = from + 1; i < to; i++) values[start + i * stride] = first + step * (i - from)
+  const count = nodes.length
+  const rows = new Float64Array(count * side)
+  for (let row = 0, n = 0; row < count; row++) {
+    for (let i = 0, w = 0; i < side; i++, w += 4) {
+      const at = row * count + first[i]
+      rows[n++] =
+        weights[w] * values[at] +
+        weights[w + 1] * values[at + 1] +
+        weights[w + 2] * values[at + 2] +
+        weights[w + 3] * values[at + 3]
+    }
+  }
+  for (let row = 0, n = 0; row < side; row++) {
+    const w = 4 * row
+    const [a, b, c, d] = [weights[w], weights[w + 1], weights[w + 2], weights[w + 3]]
+    for (let i = 0, at = first[row] * side; i < side; i++, at++) {
+      target[n++] =
+        a * rows[at] + b * rows[at + side] + c * rows[at + 2 * side] + d * rows[at + 3 * side]
+    }
   }
 }

@@ -162,8 +162,7 @@ export class HeightPages {
     const { lowest, highest } = this.#source
     const spacing = spacingOf(tile, this.#baker.figure, this.atlas.surfaceSide - 1)
     const margin = this.#source.variation(MARGIN_STEPS * spacing)
-    const least = Math.min(...heights)
-    const most = Math.max(...heights)
+    const [least, most] = boundsOf(heights)
     tile.lowest = Math.min(Math.max(least - margin, lowest), least)
     tile.highest = Math.max(Math.min(most + margin, highest), most)
   }
@@ -201,7 +200,7 @@ export class HeightPages {
       this.#wrong = { answer: isArray ? heights.length : heights }
       throw new Error('no heights')
     }
-    if (!heights.every(Number.isFinite)) throw new Error('heights that are not finite')
+    if (!boundsOf(heights).every(Number.isFinite)) throw new Error('heights that are not finite')
     return heights
   }
 
@@ -239,4 +238,14 @@ export class HeightPages {
     this.atlas.dispose()
     this.#baker.dispose()
   }
+}
+
+/** Least and greatest height; NaN if there is one among them. */
+function boundsOf(heights: Float32Array): [number, number] {
+  let [least, most] = [Infinity, -Infinity]
+  for (const height of heights) {
+    least = Math.min(least, height)
+    most = Math.max(most, height)
+  }
+  return [least, most]
 }

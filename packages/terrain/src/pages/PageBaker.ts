@@ -1,4 +1,4 @@
-import { DataTexture, FloatType, NearestFilter, RedFormat } from 'three'
+import { DataArrayTexture, DataTexture, FloatType, RedFormat } from 'three'
 import { uniform } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { HeightSource } from '../heights/HeightSource'
@@ -31,8 +31,8 @@ export class PageBaker {
   readonly #resolution: number
   /** Read-back of heights to the CPU; null if nobody asks for them. */
   readonly #readback: HeightReadback | null
-  /** Heights that were loaded, of one page; null if they come from a function. */
-  readonly #loaded: DataTexture | null = null
+  /** Heights that were loaded, a page to a layer; null if they come from a function. */
+  readonly #loaded: DataArrayTexture | null = null
   /** Colours of one page, and what draws them; null without pictures. */
   readonly #image: { texture: DataTexture; quads: PageQuads } | null = null
 
@@ -60,9 +60,11 @@ export class PageBaker {
       this.#image = { texture, quads: images }
     }
     if (isPageSource(source)) {
-      const texture = new DataTexture(new Float32Array(side ** 2), side, side, RedFormat, FloatType)
+      const data = new Float32Array(MOST * side ** 2)
+      const texture = new DataArrayTexture(data, side, side, MOST)
       texture.name = 'Welkin.Terrain.loaded'
-      texture.minFilter = texture.magFilter = NearestFilter
+      texture.format = RedFormat
+      texture.type = FloatType
       this.#loaded = texture
       quads.addPass('heights', loadedHeightsOf(texture, tile, heightSide, density), heights)
       quads.addPass('surface', loadedSurfaceOf(texture, tile, surfaceSide, density), surface)
@@ -98,18 +100,20 @@ export class PageBaker {
   }
 
   /**
-   * Draws a page by the next {@link flush}, or at once if its heights were loaded; the renderer is left as it was.
+   * Draws a page by the next {@link flush}; the renderer is left as it was.
    *
    * @param heights - Loaded heights, as many as `request` asked for; null for a source that is a function.
    */
   bake(renderer: Renderer, tile: Tile, slot: number, heights: Float32Array | null = null): void {
-    this.#quads.add(tile, slot, 2 * spacingOf(tile, this.figure, this.#resolution))
+    const row = this.#quads.add(tile, slot, 2 * spacingOf(tile, this.figure, this.#resolution))
     this.#readback?.add(tile)
-    if (this.#loaded !== null && heights !== null) {
-      ;(this.#loaded.image.data as Float32Array).set(heights)
-      this.#loaded.needsUpdate = true
-      this.flush(renderer)
-    } else if (this.#quads.isFull) this.flush(renderer)
+    const loaded = this.#loaded
+    if (loaded !== null && heights !== null) {
+      loaded.image.data!.set(heights, row * heights.length)
+      loaded.addLayerUpdate(row)
+      loaded.needsUpdate = true
+    }
+    if (row + 1 === MOST) this.flush(renderer)
   }
 
   /** Draws the pages that wait; with a read-back their tiles have the heights some frames later. */

@@ -19,7 +19,7 @@ import type { PageAtlas } from './PageAtlas'
 import type { PageUniforms } from './tsl/pageOutput'
 
 /** Most pages of one drawing. */
-export const MOST = 64
+export const MOST = 32
 
 /** Attributes of an instance, four numbers each. */
 const ATTRIBUTES = ['pageCube', 'pageCenter', 'pageReference', 'pageSlot'] as const
@@ -51,14 +51,15 @@ export class PageQuads {
     this.#columns = columns
     const corner = attribute<'vec4'>('pageSlot', 'vec4').xy.add(positionGeometry.xy)
     this.#place = corner.div(vec2(columns, capacity / columns))
-    const [cube, center, reference] = ATTRIBUTES.map(flat)
+    const [cube, center, reference, slot] = ATTRIBUTES.map(flat)
     this.tile = {
       cube: cube.xyz,
       face: cube.w,
       center: center.xyz,
       extent: center.w,
       reference: reference.xyz,
-      shortest: reference.w
+      shortest: reference.w,
+      row: slot.z
     }
     const geometry = this.#geometry
     geometry.name = 'Welkin.Terrain.pages'
@@ -98,17 +99,13 @@ export class PageQuads {
     this.#meshes.push({ mesh, target })
   }
 
-  /** True if no other page has room in this drawing. */
-  get isFull(): boolean {
-    return this.#count === MOST
-  }
-
   /**
    * Adds a page to the next drawing.
    *
    * @param shortest - Shortest wavelength that vertices show [m].
+   * @returns Its number in the drawing, less than {@link MOST}.
    */
-  add(tile: Tile, slot: number, shortest: number): void {
+  add(tile: Tile, slot: number, shortest: number): number {
     const row = this.#count++
     const n = 4 * row
     const [cubes, centers, references, slots] = this.#attributes.map(({ array }) => array)
@@ -123,6 +120,7 @@ export class PageQuads {
     slots[n] = slot % this.#columns
     slots[n + 1] = Math.floor(slot / this.#columns)
     slots[n + 2] = row
+    return row
   }
 
   /** Draws the pages that were added; the renderer is left as it was. */

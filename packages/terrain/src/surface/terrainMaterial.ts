@@ -23,6 +23,7 @@ import { faceAxes } from '../tiles/tsl/cubeSphere'
 import type { ShaderFigure } from '../tiles/tsl/figure'
 import { tilePages, tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
 import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
+import type { GroundDetail } from './tsl/grain'
 import { groundZone } from './tsl/groundRules'
 import { groundSurface } from './tsl/groundSurface'
 import {
@@ -38,8 +39,8 @@ import { GroundMaterial, viewDirection } from './GroundMaterial'
 import { WaterMirrorNode } from './WaterMirrorNode'
 
 /** True of the material that three draws shadow maps with. */
-const isShadowPass = (material: object): boolean =>
-  (material as { isShadowPassMaterial?: boolean }).isShadowPassMaterial === true
+export const isShadowPass = (material: object | null): boolean =>
+  material !== null && 'isShadowPassMaterial' in material
 
 /** Varying: vertices assign it, pixels read it. */
 const handedOn = <T extends Node>(type: string, name: string): T & { assign(value: T): void } =>
@@ -57,6 +58,7 @@ const pictured = ({ rgb, a }: Vec4, made: Vec3, detail: Float): Vec3 => {
  * Material of a terrain: vertices on the ground and normals at every pixel, by pages.
  *
  * @param grain - As of `grainTexture`.
+ * @param code - Detail that it has code for: code that is skipped costs time, too.
  */
 export function terrainMaterial(
   atmosphere: Atmosphere,
@@ -64,7 +66,8 @@ export function terrainMaterial(
   grain: Texture,
   uniforms: TerrainUniforms,
   figure: ShaderFigure,
-  { resolution, detail, maps, mask }: FixedOptions
+  { resolution, detail, maps, mask }: FixedOptions,
+  code: GroundDetail = 2
 ): MeshStandardNodeMaterial {
   const material = new GroundMaterial()
   material.name = 'Welkin.Terrain'
@@ -136,12 +139,13 @@ export function terrainMaterial(
     {
       maps,
       paint: (layers, relief) => mask?.layersAt(layers, offset, figure.isFlat, relief) ?? layers
-    }
+    },
+    code
   )
   const depth = seaLevel.sub(ground.z).toConst() as Float
   const { footprint, spread } = surface
   const shore = { offset, depth, up, footprint, spread }
-  const sea = seaSurface(shore, windyVariance(seaVariance, blend.y), waveTime)
+  const sea = seaSurface(shore, windyVariance(seaVariance, blend.y), waveTime, code > 0)
   const { cover } = sea
   material.water = cover
   const dry = normal.sub(surface.grain)
@@ -163,6 +167,7 @@ export function terrainMaterial(
       const cosViewer = litView.dot(viewDirection()).max(0).toConst() as Float
       const entering = waterFresnel(cosViewer, sea.variance).oneMinus()
       color.assign(mix(color, waterColor(color, depth).mul(entering), cover))
+      if (code === 0) return
       If(footprint.lessThan(FOAM_GONE), () => {
         const foam = foamCover(shore, surface.tangle, ground.w, waveTime)
         color.assign(mix(color, vec3(FOAM), foam.mul(cover)))

@@ -136,6 +136,26 @@ describe('a grid', () => {
     for (const height of stripes.loadHeights(coarse)) expect(Math.abs(height - 50)).toBeLessThan(1)
   })
 
+  it('finds pages much finer than its numbers to a thousandth of their differences, within 1 mm about a walker', () => {
+    const rough = values.map((_, i) => 500 + 60 * Math.sin(12.9898 * i * i))
+    const rugged = make({}, rough)
+    let most = 0
+    for (const level of [12, 14, 16, 18, 20]) {
+      const page = pageAt(10.2, 47.15, level, 132)
+      const heights = rugged.loadHeights(page)
+      let worst = 0
+      for (const [i, { longitude, latitude }] of degreesOf(page).entries()) {
+        if (i % 41 !== 0) continue
+        const { height } = sampleAt(rugged, longitude, latitude)
+        worst = Math.max(worst, Math.abs(heights[i] - height))
+      }
+      most = Math.max(most, worst)
+      expect(worst).toBeLessThan(level < 18 ? 0.12 : 1e-3)
+    }
+    // Those of some page are interpolated.
+    expect(most).toBeGreaterThan(1e-4)
+  })
+
   it('takes what has no number from about it', () => {
     const holed = values.map((value, i) =>
       i % WIDTH > 10 && i % WIDTH < 16 ? -9999 : i === 700 ? NaN : value

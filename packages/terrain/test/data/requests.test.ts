@@ -43,6 +43,20 @@ describe('requests', () => {
     await expect(requests.get(7, 0, first.signal)).rejects.toThrow('aborted')
   })
 
+  it('of one page, however many, add no listeners to its signal, and are given up with it', async () => {
+    const page = new AbortController()
+    const { signal } = page
+    const add = vi.spyOn(signal, 'addEventListener')
+    const requests = new TileRequests(() => new Promise<number>(() => {}), settings)
+    const all = Array.from({ length: 30 }, (_, key) => requests.get(key, 0, signal))
+    expect(add.mock.calls.length).toBeLessThan(2)
+    expect(requests.size).toBe(30)
+    page.abort()
+    const answers = await Promise.allSettled(all)
+    expect(answers.every(({ status }) => status === 'rejected')).toBe(true)
+    expect(requests.size).toBe(0)
+  })
+
   it('wait twice as long before each retry, and leave room for others meanwhile', async () => {
     const times: number[] = []
     const start = Date.now()

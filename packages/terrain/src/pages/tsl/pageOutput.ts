@@ -1,5 +1,5 @@
-import { Fn, float, ivec2, texture, uv, vec2, vec4 } from 'three/tsl'
-import type { Texture } from 'three'
+import { Fn, float, int, ivec2, texture, uv, vec2, vec4 } from 'three/tsl'
+import type { DataArrayTexture, Texture } from 'three'
 import type { HeightSource, SurfacePoint } from '../../heights/HeightSource'
 import { heightAndSky } from './skyShare'
 import { packed } from './packing'
@@ -32,6 +32,8 @@ export interface PageUniforms {
   readonly figure: ShaderFigure
   /** Seed of patches and climate. */
   readonly seed: Float
+  /** Number of the page in the drawing. */
+  readonly row: Float
 }
 
 /** A place of a page. */
@@ -117,13 +119,17 @@ export const imageOf = (image: Texture, side: number): Vec4 =>
     )
   )()
 
-/** Heights that were loaded, a step beyond each edge too. */
-const loaded = (heights: Texture, texel: Vec2): Float =>
-  (texture(heights) as unknown as { load(at: unknown): Vec4 }).load(ivec2(texel as never)).x
+/** Heights that were loaded, a page to a layer, a step beyond each edge too. */
+const loaded = (heights: DataArrayTexture, { row }: PageUniforms, texel: Vec2): Float => {
+  const node = texture(heights) as unknown as {
+    load(at: unknown): { depth(layer: unknown): Vec4 }
+  }
+  return node.load(ivec2(texel as never)).depth(int(row)).x
+}
 
 /** Height and climate of a vertex, from heights that were loaded: all of the sky is seen. */
 export const loadedHeightsOf = (
-  heights: Texture,
+  heights: DataArrayTexture,
   tile: PageUniforms,
   side: number,
   density: number
@@ -132,7 +138,7 @@ export const loadedHeightsOf = (
     const texel = texelOf(side)
     const place = placeAt(tile, faceAxes(tile.face), texel, side)
     return vec4(
-      loaded(heights, texel.mul(density).add(1)),
+      loaded(heights, tile, texel.mul(density).add(1)),
       packed(climateAt(tile, place), float(1)),
       0,
       1
@@ -141,7 +147,7 @@ export const loadedHeightsOf = (
 
 /** Gradient by central differences, height and patchiness for pixels, from heights that were loaded. */
 export const loadedSurfaceOf = (
-  heights: Texture,
+  heights: DataArrayTexture,
   tile: PageUniforms,
   side: number,
   density: number
@@ -150,7 +156,7 @@ export const loadedSurfaceOf = (
     const texel = texelOf(side)
     const axes = faceAxes(tile.face)
     const place = placeAt(tile, axes, texel, side)
-    const at = (x: number, y: number): Float => loaded(heights, texel.add(vec2(x + 1, y + 1)))
+    const at = (x: number, y: number): Float => loaded(heights, tile, texel.add(vec2(x + 1, y + 1)))
     const along = (x: number, y: number): { step: Vec3; rise: Float } => {
       const [after, before] = [1, -1].map(sign =>
         placeAt(tile, axes, texel.add(vec2(sign * x, sign * y)) as Vec2, side)

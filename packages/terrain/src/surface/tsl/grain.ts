@@ -2,14 +2,21 @@ import { Fn, If, dFdx, dFdy, float, mat4, smoothstep, vec3, vec4 } from 'three/t
 import type { Texture } from 'three'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { GRAIN_SLOPE } from '../grainTexture'
+import { LONGEST_KEPT } from './seaSurface'
 import { frameNear, pieceOf, tilingVertices } from './stochasticTiling'
 
 /** Sides of the picture on the ground [m], and longer side of a pixel's footprint at which nothing is left [m]. */
 const COARSE = { side: 17, gone: 1 }
 const FINE = { side: 2.1, gone: 0.14 }
 
-/** Crowns and outcrops, where single stones are too small to be seen: footprints between which they come, and go [m]. */
+/** Brush and outcrops, where single stones are too small to be seen: footprints between which they come, and go [m]. */
 const CANOPY = { side: 150, from: 0.35, to: 0.8, fades: 5, gone: 10 }
+
+/**
+ * Shorter sides of a footprint between which crowns come [m]. By the longer ones, as brush: at eye height crowns lie on the meadow from 40 m on, as flat
+ * black spots (*Terrain*, still grass).
+ */
+const CROWNS = [0.2, 0.45] as const
 
 /** Footprint at which the slopes of all stones are smaller than a pixel [m]. */
 const LOST = 0.075
@@ -17,12 +24,21 @@ const LOST = 0.075
 /** Least size of what a picture's level shows, to the longer side of a pixel. */
 const LEAST_SIZE = 0.6
 
+/** Slope that no crown exceeds [–]. */
+const STEEPEST_CROWN = 0.4
+
 /** Cells of the lattice in 256 m that pieces of stones and grass are moved by, and those of crowns. */
 const CELLS = 36
 const CANOPY_CELLS = 3
 
 /** Part of `gone` at which a picture begins to go. */
 const FADE = 0.5
+
+/** Code that a material of the ground has: with stones and blades (2), with crowns, outcrops and waves alone (1), or with none of these (0). */
+export type GroundDetail = 0 | 1 | 2
+
+/** Least side of pixels on the ground that each is for: beyond it the others show the same [m]. */
+export const LEAST_FOOTPRINTS = [Math.max(CANOPY.gone, LONGEST_KEPT), COARSE.gone, 0] as const
 
 /** Place in a face's plane, and the ground there. */
 export interface GrainPlace {
@@ -57,11 +73,11 @@ export interface Grain {
   readonly lost: Float
 }
 
-type Variable = Vec4 & { addAssign(value: Vec4): void }
+type Variable = Vec4 & { addAssign(value: Vec4): void; mulAssign(value: Vec4): void }
 type Slope = Vec3 & { assign(value: Vec3): void }
 
 /** Stones and grass from 3 m to 1 cm, and crowns from afar; 0 where they are smaller than pixels. */
-export function grainAt(place: GrainPlace): Grain {
+export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
   const { grain, offset, first, normal } = place
   // Derivatives are taken out of branches.
   const across = dFdx(offset).toConst() as Vec3
@@ -85,8 +101,7 @@ export function grainAt(place: GrainPlace): Grain {
     const coarseSlope = vec3(0).toVar() as unknown as Slope
     const crowns = vec4(0).toVar() as unknown as Variable
     const crownSlope = vec3(0).toVar() as unknown as Slope
-    // Seen from afar there are none of them.
-    If(footprint.lessThan(CANOPY.gone), () => {
+    const find = (): void => {
       const logSize = size.max(1e-6).log2().toConst() as Float
       const frame = { ...frameNear(normal, place.up, first), logSize }
       const inSpace = ({ x, y }: Vec4): Vec3 =>
@@ -96,8 +111,11 @@ export function grainAt(place: GrainPlace): Grain {
           const piece = pieceOf(grain, frame, CANOPY.side, away, random.xy)
           crowns.addAssign(piece.mul(share.mul(canopy)))
         })
+        const raised = smoothstep(...CROWNS, width.min(height)).toConst()
+        crowns.mulAssign(vec4(vec3(raised), 1))
         crownSlope.assign(inSpace(crowns))
       })
+      if (detail < 2) return
       If(far.greaterThan(0), () => {
         tilingVertices(place.reference, offset, CELLS).each(({ away, random }, share) => {
           const boulders = pieceOf(grain, frame, COARSE.side, away, random.xy)
@@ -110,7 +128,9 @@ export function grainAt(place: GrainPlace): Grain {
         fineSlope.assign(inSpace(fine))
         coarseSlope.assign(inSpace(coarse))
       })
-    })
+    }
+    // Seen from afar there are none of them.
+    if (detail > 0) If(footprint.lessThan(CANOPY.gone), find)
     return mat4(
       vec4(fineSlope, fine.z),
       vec4(coarseSlope, coarse.z),
@@ -131,4 +151,19 @@ export function grainAt(place: GrainPlace): Grain {
     footprint,
     lost: footprint.div(LOST).min(1)
   }
+}
+
+/**
+ * Slopes of crowns, no more than {@link STEEPEST_CROWN}: leaves let light through to the shaded side. As steep as they are: crowns that stand alone are black
+ * wedges with edges like a saw, and crests are dotted (*Terrain*, stills grass and scree).
+ */
+export function leaning(slope: Vec3): Vec3 {
+  const most = STEEPEST_CROWN
+  return slope.mul(
+    slope
+      .dot(slope)
+      .div(most * most)
+      .add(1)
+      .inverseSqrt()
+  )
 }

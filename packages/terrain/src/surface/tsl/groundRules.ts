@@ -38,8 +38,11 @@ import type { Grain, GrainPlace } from './grain'
 const SPREAD = 0.12
 const MOST_SPREAD = 450
 
-/** Deviation of patches, and size of a pixel that shows none of them: a share of it is woods then [m]. */
-const PATCH_DEVIATION = 0.35
+/**
+ * Deviation of patches that a pixel of {@link PATCHES_GONE} does not show: a share of it is woods then. It goes by the square root of its size, as
+ * each octave of patches is 0.7 of the one before. By the size itself: woods from 400 km are spots with hard edges (*Terrain*, still 400km).
+ */
+const PATCH_DEVIATION = 0.42
 const PATCHES_GONE = 4000
 
 /** Height by which snow lies lower in hollows that see nothing of the sky [m], and slope by which more soil holds there. */
@@ -151,7 +154,7 @@ export function groundRules(
     .sub(hollow.mul(HOLLOW_SOIL))
     .toConst()
 
-  const lost = grain.footprint.div(PATCHES_GONE).min(1).mul(PATCH_DEVIATION).toConst()
+  const lost = grain.footprint.div(PATCHES_GONE).min(1).sqrt().mul(PATCH_DEVIATION).toConst()
   const moisture = patch
     .sub(dryness)
     .sub(climate.mul(DRY_WOODS))

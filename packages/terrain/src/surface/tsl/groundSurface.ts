@@ -1,7 +1,7 @@
 import { Fn, If, float, mix, smoothstep, vec3 } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 import type { GroundMaps } from '../maps/GroundMaps'
-import { grainAt } from './grain'
+import { grainAt, leaning, type GroundDetail } from './grain'
 import type { MappedGround } from './mappedGround'
 import {
   groundClimate,
@@ -72,12 +72,13 @@ export interface OwnSurface {
 export function groundSurface(
   place: GroundPlace,
   seaLevel: Float,
-  { maps, paint }: OwnSurface
+  { maps, paint }: OwnSurface,
+  detail: GroundDetail
 ): GroundSurface {
   const { patch, climate } = place
   const ground = groundClimate(place, seaLevel)
   const { overSea, overTrees, sunny, lowland } = ground
-  const grain = grainAt(place)
+  const grain = grainAt(place, detail)
   const { stone, blade, boulder, tuft, crown, brush } = grain
   const rules = groundRules(place, grain, ground)
   const { relief, spread } = rules
@@ -164,7 +165,7 @@ export function groundSurface(
   const occlusion = hollow.mul(0.9).add(1).max(0.3)
   const slopes = grain
     .gradient(bump, bump.mul(bareness.max(bare).mul(0.6)))
-    .add(grain.canopySlope.mul(raised))
+    .add(leaning(grain.canopySlope.mul(raised)))
   return {
     tangle,
     detail: mix(light.mul(0.8), stone.mul(0.45), bareness.max(bare)).add(1),

@@ -23,7 +23,7 @@ const SHALLOW = 0.12
 const SHALLOW_SPREAD = 0.5
 
 /** Size of a pixel beyond which no wave is kept [m]. */
-const LONGEST_KEPT = Math.max(...SEA_WAVES.map(({ length }) => length))
+export const LONGEST_KEPT = Math.max(...SEA_WAVES.map(({ length }) => length))
 
 /** Reflectance of water at normal incidence, refractive index 1.34. */
 export const WATER_FRESNEL = ((1.34 - 1) / (1.34 + 1)) ** 2
@@ -78,8 +78,14 @@ type Variable = Vec4 & { assign(value: Vec4): void; addAssign(value: Vec4): void
  *
  * @param seaVariance - Variance of all slopes, see `seaSlopeVariance`.
  * @param seconds - Time that waves move by [s].
+ * @param hasWaves - False where all pixels are larger than {@link LONGEST_KEPT}.
  */
-export function seaSurface(place: SeaPlace, seaVariance: Float, seconds: Float): SeaSurface {
+export function seaSurface(
+  place: SeaPlace,
+  seaVariance: Float,
+  seconds: Float,
+  hasWaves = true
+): SeaSurface {
   const { offset, depth, up, footprint, spread } = place
   const shallow = spread.mul(SHALLOW_SPREAD).max(SHALLOW)
   const cover = smoothstep(0, shallow, depth).toConst()
@@ -87,8 +93,7 @@ export function seaSurface(place: SeaPlace, seaVariance: Float, seconds: Float):
   const directions = listed(SEA_WAVES.map(wave => new Vector4(...wave.direction, wave.length)))
   const waves = Fn(() => {
     const sum = vec4(0).toVar() as unknown as Variable
-    // From afar no wave is kept.
-    If(cover.greaterThan(0).and(footprint.lessThan(LONGEST_KEPT)), () => {
+    const find = (): void => {
       const steepest = seaVariance.sqrt().mul(WAVE_SLOPE).toConst()
       // A loop: where there is no sea, the code of its waves costs time, too.
       loop('wave', SEA_WAVES.length, wave => {
@@ -104,7 +109,9 @@ export function seaSurface(place: SeaPlace, seaVariance: Float, seconds: Float):
         sum.addAssign(vec4(direction.mul(tilt), kept.mul(kept).div(3)))
       })
       sum.assign(vec4(gradientAlong(sum.xyz, up), sum.w))
-    })
+    }
+    // From afar no wave is kept.
+    if (hasWaves) If(cover.greaterThan(0).and(footprint.lessThan(LONGEST_KEPT)), find)
     return sum
   })().toConst() as unknown as Vec4
   return { cover, slope: waves.xyz.mul(cover), variance: seaVariance.sub(waves.w) }
