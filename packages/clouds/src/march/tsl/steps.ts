@@ -17,10 +17,17 @@ import { CAUTION } from '../../density/tsl/likelyDistance'
 const LEAST_STEPS = 4
 
 /**
- * Steps through clear air over those in clouds that grow with the distance, at least. Less: rays along the
+ * Steps through clear air over those in clouds that grow with the distance, at most where clouds are not likely nearer. Less: rays along the
  * horizon run out of steps, and clouds end there (*Cumulus from the ground*).
  */
 const CLEAR_GROWTH = 4
+
+/**
+ * Likely distance to cloud below which steps are as short as in clouds, and how they grow beyond it with what is left of it [steps in clouds].
+ * Steps that grow at once: edges of low clouds are ragged (*Cumulus*).
+ */
+const NEAR = 0.25
+const GRADUAL = 0.75
 
 /**
  * Steps through clear air near storms over those in clouds that grow with the distance. Greater: heads, which are smaller than that
@@ -143,8 +150,15 @@ export function nextSteps(
 ): StepPair {
   const growing = position.mul(stepGrowth).toConst() as Float
   const fine = finest.max(growing).min(longest).toConst() as Float
+  const gradual = likely
+    .div(fine)
+    .sub(NEAR)
+    .mul(GRADUAL)
+    .add(1)
+    .min(CLEAR_GROWTH)
+    .toConst() as Float
   const least = fine
-    .max(growing.mul(isNear.select(NEAR_GROWTH, CLEAR_GROWTH)))
+    .max(growing.mul(isNear.select(gradual.min(NEAR_GROWTH), gradual)))
     .min(longest)
     .toConst() as Float
   if (isVaried) jitter.assign(jitter.add(0.618034).fract())
@@ -189,7 +203,7 @@ export function advance(
     isFine.assign(true)
     part.assign(jitter.max(LEAST_PART))
   }).Else(() => {
-    const isNext = isCloudy.or(likelyDistance.lessThan(fine)).toConst()
+    const isNext = isCloudy.or(likelyDistance.lessThan(fine.mul(NEAR))).toConst()
     part.assign(isNext.and(isFine.not()).select(jitter.max(LEAST_PART), 1))
     isFine.assign(isNext)
     // Where all layers are known to be clear, none was sampled: steps as long as in thin air would jump over towers.
