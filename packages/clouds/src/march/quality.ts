@@ -56,10 +56,10 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
   },
   medium: {
     steps: 512,
-    stepGrowth: 0.005,
+    stepGrowth: 0.004,
     shortestStep: 4,
     depthStep: 0.3,
-    layerSteps: 14,
+    layerSteps: 18,
     lightSteps: 4,
     block: 6
   },

@@ -72,10 +72,8 @@ export function reprojectHistory(
   const nearest = from.floor().add(0.5).div(frame.size)
   const apart = unpack(history.distances.sample(nearest).level(0))
   const clampedEnd = clampDistance(end).toConst() as Float
-  const light = vec4(0).toVar() as Vec4
-  If(isStill, () => {
-    light.assign(history.light.sample(nearest).level(0))
-  }).Else(() => {
+  const light = history.light.sample(from.div(frame.size)).level(0).toVar() as Vec4
+  If(isStill.not(), () => {
     light.assign(sharpSample(history.light, from, frame.size))
     // Transmittance, which overshoots at edges.
     light.w.assign(light.w.min(1))
