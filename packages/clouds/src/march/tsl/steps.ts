@@ -10,14 +10,11 @@ import { CAUTION } from '../../density/tsl/likelyDistance'
 // two layer boundaries, the quality, noise, what the pair before found, and the transmittance up to it; never
 // on the light.
 
-/**
- * Least number of steps through a layer that is thinner than a few samples are wide. Fewer: grain in far
- * cirrus (*Cirrus*).
- */
+/** Least number of steps through a layer that is thinner than a few samples are wide. Fewer: grain in far cirrus (*Cirrus*). */
 const LEAST_STEPS = 4
 
 /**
- * Steps through clear air over those in clouds that grow with the distance, at most where clouds are not likely nearer. Less: rays along the
+ * Steps through clear air over those in clouds that grow with the distance, at most. Less: rays along the
  * horizon run out of steps, and clouds end there (*Cumulus from the ground*).
  */
 const CLEAR_GROWTH = 4
@@ -152,15 +149,10 @@ export function nextSteps(
   const fine = finest.max(growing).min(longest).toConst() as Float
   const gradual = likely
     .div(fine)
-    .sub(NEAR)
     .mul(GRADUAL)
-    .add(1)
-    .min(CLEAR_GROWTH)
-    .toConst() as Float
-  const least = fine
-    .max(growing.mul(isNear.select(gradual.min(NEAR_GROWTH), gradual)))
-    .min(longest)
-    .toConst() as Float
+    .add(1 - NEAR * GRADUAL)
+  const growth = gradual.min(isNear.select(NEAR_GROWTH, CLEAR_GROWTH))
+  const least = fine.max(growing.mul(growth)).min(longest).toConst() as Float
   if (isVaried) jitter.assign(jitter.add(0.618034).fract())
   const caution = isVaried ? jitter.mul(SPREAD).add(CAUTION - SPREAD) : CAUTION
   const clear = likely.mul(caution).clamp(least, longest)
