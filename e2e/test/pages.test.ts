@@ -146,8 +146,8 @@ describe('numbers that pages take from the code', () => {
 
   it('has the blocks of the qualities', () => {
     const { low, medium, high, ultra } = cloudQualities
-    expect([low.block, medium.block, high.block, ultra.block]).toEqual([4, 4, 3, 2])
-    expect(clouds).toContain('4×4 (`low`, `medium`), 3×3 (`high`) or 2×2 (`ultra`)')
-    expect(clouds).toContain('16 at `low` and `medium`, 9 at `high`, 4 at `ultra`')
+    expect([low.block, medium.block, high.block, ultra.block]).toEqual([6, 6, 5, 2])
+    expect(clouds).toContain('6×6 (`low`, `medium`), 5×5 (`high`) or 2×2 (`ultra`)')
+    expect(clouds).toContain('36 at `low` and `medium`, 25 at `high`, 4 at `ultra`')
   })
 })

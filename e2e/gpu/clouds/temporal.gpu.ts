@@ -183,6 +183,8 @@ gpuTest(
       t,
       async shared => {
         const sky = new Sky(shared, 'medium', narrow.fieldOfView)
+        // Three rounds of a block.
+        sky.node.quality = { ...cloudQualities.medium, block: 4 }
         const { frame } = sky.node.passes.viewRays
         const next = frame.next.bind(frame)
         // All pictures of a view have the same shadow maps.

@@ -9,13 +9,18 @@ import { vec4Array } from '../tsl-types'
 import { FAR_AWAY } from './tsl/layerBoundaries'
 import { matrix3, matrix4, number, vector2 } from '../uniforms'
 
-/** Order in which the pixels of a block are marched: neighbours in time are far apart. */
-const ORDERS: Readonly<Record<number, readonly number[]>> = {
-  1: [0],
-  2: [0, 3, 1, 2],
-  3: [4, 0, 8, 2, 6, 1, 7, 3, 5],
-  4: [0, 10, 2, 8, 5, 15, 7, 13, 1, 11, 3, 9, 4, 14, 6, 12]
-}
+/**
+ * Strides through the pixels of a block, row by row, in the order in which they are marched, by the block's edge: neighbours in time are far
+ * apart, and the first few are spread over the block.
+ */
+const STRIDES = [0, 1, 3, 4, 9, 7, 17]
+
+/** Pixels of a block. */
+const pixelsOf = (block: number): number => block ** 2
+
+/** Index of the pixel of a block that a frame marches. */
+export const pixelAt = (block: number, frame: number): number =>
+  (frame * STRIDES[block]) % pixelsOf(block)
 
 /** Step of the additive recurrence whose consecutive numbers lie farthest apart in the mean. */
 export const GOLDEN_RATIO = (Math.sqrt(5) - 1) / 2
@@ -225,7 +230,7 @@ export class FrameUniforms {
     this.unsureUntil.value = isKnown ? known : FAR_AWAY
     this.turn.value = this.#count % ROUND
     this.#forms = forms
-    const frames = ORDERS[block].length
+    const frames = pixelsOf(block)
     this.#countForgetting(isCut, frames, view.lightDirection, cloudInputs(field, lightVersion))
     const matrices = [...view.viewToMapped.elements, ...projection.elements]
     const isStill = !isCut && isAtRest && this.#forgetting <= 0 && isSame(matrices, this.#matrices)
@@ -242,16 +247,15 @@ export class FrameUniforms {
 
   /** Chooses the pixel of each block that is marched, and the noise of its steps. */
   #setJitter(block: number, usesHistory: boolean): void {
-    const order = ORDERS[block]
-    const index = order[this.#count % order.length]
+    const frames = pixelsOf(block)
+    const index = pixelAt(block, this.#count)
     this.jitter.value.set(index % block, Math.floor(index / block))
     this.block.value = block
     // Low-discrepancy in a pixel's samples, which are whole rounds apart, and over the pixels of a block.
-    const round = Math.floor(this.#count / order.length)
-    const shift = round * GOLDEN_RATIO + index / order.length
+    const round = Math.floor(this.#count / frames)
+    const shift = round * GOLDEN_RATIO + index / frames
     this.noiseShift.value = usesHistory ? shift % 1 : 0
-    const shared = ORDERS[this.fallBlock.value]
-    const own = shared[round % shared.length]
+    const own = pixelAt(this.fallBlock.value, round)
     this.fallPixel.value.set(own & 1, own >> 1)
     this.#count++
   }

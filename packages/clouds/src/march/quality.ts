@@ -34,7 +34,7 @@ export interface CloudQuality {
    */
   readonly lightSteps: number
   /**
-   * Edge of the blocks of which a frame marches one pixel each: 1, 2, 3 or 4; history has the rest. Greater:
+   * Edge of the blocks of which a frame marches one pixel each, 1 to 6; history has the rest. Greater:
    * coarse clouds while one turns or flies (*Cockpit*).
    */
   readonly block: number
@@ -52,16 +52,16 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     depthStep: 1,
     layerSteps: 8,
     lightSteps: 1,
-    block: 4
+    block: 6
   },
   medium: {
     steps: 512,
-    stepGrowth: 0.005,
+    stepGrowth: 0.004,
     shortestStep: 4,
     depthStep: 0.3,
-    layerSteps: 14,
+    layerSteps: 18,
     lightSteps: 4,
-    block: 4
+    block: 6
   },
   high: {
     steps: 640,
@@ -70,7 +70,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     depthStep: 0.3,
     layerSteps: 18,
     lightSteps: 4,
-    block: 3
+    block: 5
   },
   ultra: {
     steps: 960,
@@ -107,7 +107,7 @@ export function resolveQuality(
   const name = `${where}.quality`
   checkOptions(name, quality, ...(Object.keys(cloudQualities.high) as (keyof CloudQuality)[]))
   checkRanges(name, quality, ranges)
-  checkChoice(name, 'block', quality.block, [1, 2, 3, 4])
+  checkChoice(name, 'block', quality.block, [1, 2, 3, 4, 5, 6])
   return Object.freeze({ ...quality })
 }
 

@@ -49,7 +49,9 @@ describe('CloudsNode', () => {
       /CloudsNode.quality: unknown option 'stps', did you mean 'steps'\?/
     )
     const between = { ...cloudQualities.high, block: 2.5 }
-    expect(() => (node.quality = between)).toThrow(/quality: block must be 1, 2, 3 or 4, got 2\.5/)
+    expect(() => (node.quality = between)).toThrow(
+      /quality: block must be 1, 2, 3, 4, 5 or 6, got 2\.5/
+    )
     expect(node.quality).toBe(cloudQualities.low)
     node.quality = { ...cloudQualities.high, steps: 20 }
     expect(node.quality).toEqual({ ...cloudQualities.high, steps: 20 })

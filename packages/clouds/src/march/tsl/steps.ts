@@ -10,17 +10,21 @@ import { CAUTION } from '../../density/tsl/likelyDistance'
 // two layer boundaries, the quality, noise, what the pair before found, and the transmittance up to it; never
 // on the light.
 
-/**
- * Least number of steps through a layer that is thinner than a few samples are wide. Fewer: grain in far
- * cirrus (*Cirrus*).
- */
+/** Least number of steps through a layer that is thinner than a few samples are wide. Fewer: grain in far cirrus (*Cirrus*). */
 const LEAST_STEPS = 4
 
 /**
- * Steps through clear air over those in clouds that grow with the distance, at least. Less: rays along the
+ * Steps through clear air over those in clouds that grow with the distance, at most. Less: rays along the
  * horizon run out of steps, and clouds end there (*Cumulus from the ground*).
  */
 const CLEAR_GROWTH = 4
+
+/**
+ * Likely distance to cloud below which steps are as short as in clouds, and how they grow beyond it with what is left of it [steps in clouds].
+ * Steps that grow at once: edges of low clouds are ragged (*Cumulus*).
+ */
+const NEAR = 0.25
+const GRADUAL = 0.75
 
 /**
  * Steps through clear air near storms over those in clouds that grow with the distance. Greater: heads, which are smaller than that
@@ -143,10 +147,12 @@ export function nextSteps(
 ): StepPair {
   const growing = position.mul(stepGrowth).toConst() as Float
   const fine = finest.max(growing).min(longest).toConst() as Float
-  const least = fine
-    .max(growing.mul(isNear.select(NEAR_GROWTH, CLEAR_GROWTH)))
-    .min(longest)
-    .toConst() as Float
+  const gradual = likely
+    .div(fine)
+    .mul(GRADUAL)
+    .add(1 - NEAR * GRADUAL)
+  const growth = gradual.min(isNear.select(NEAR_GROWTH, CLEAR_GROWTH))
+  const least = fine.max(growing.mul(growth)).min(longest).toConst() as Float
   if (isVaried) jitter.assign(jitter.add(0.618034).fract())
   const caution = isVaried ? jitter.mul(SPREAD).add(CAUTION - SPREAD) : CAUTION
   const clear = likely.mul(caution).clamp(least, longest)
@@ -189,7 +195,7 @@ export function advance(
     isFine.assign(true)
     part.assign(jitter.max(LEAST_PART))
   }).Else(() => {
-    const isNext = isCloudy.or(likelyDistance.lessThan(fine)).toConst()
+    const isNext = isCloudy.or(likelyDistance.lessThan(fine.mul(NEAR))).toConst()
     part.assign(isNext.and(isFine.not()).select(jitter.max(LEAST_PART), 1))
     isFine.assign(isNext)
     // Where all layers are known to be clear, none was sampled: steps as long as in thin air would jump over towers.
