@@ -198,13 +198,17 @@ async function timeCity(
     ms: median(totals),
     passes: new Map([...passes].map(([name, values]) => [name, median(values)]))
   }))
-  return others.map(({ ms, passes }, i) => ({
-    ...options,
-    quality: qualities[i],
-    withoutMs: bare.ms,
-    shaftsMs: ms - bare.ms,
-    passes: [...passes].map(([name, each]) => [name, each - (bare.passes.get(name) ?? 0)])
-  }))
+  const costs: ShaftCost[] = []
+  for (const [i, { ms, passes }] of others.entries()) {
+    costs.push({
+      ...options,
+      quality: qualities[i],
+      withoutMs: bare.ms,
+      shaftsMs: ms - bare.ms,
+      passes: [...passes].map(([name, each]) => [name, each - (bare.passes.get(name) ?? 0)])
+    })
+  }
+  return costs
 }
 
 const cases = [

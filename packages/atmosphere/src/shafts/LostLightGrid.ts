@@ -293,7 +293,7 @@ export class LostLightGrid {
     const mean = sampleLevel0(this.#texels, middle).toConst()
     const own = log2(path.max(MIN_PATH)).toConst() as Float
     const part = shownOf(path).toVar()
-    const shownAt = (depth: Float): Float => shownOf(depth.exp2().toConst() as Float)
+    const shownAt = (depth: Float): Float => shownOf(depth.exp2().toConst())
     const moved = (depth: Float): Float =>
       tolerance ? depth.sub(own).clamp(tolerance.negate(), tolerance).toConst() : float(0)
     if (tolerance) {

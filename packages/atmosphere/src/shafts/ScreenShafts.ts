@@ -231,7 +231,7 @@ export class ScreenShafts implements ScreenShadows {
     const square = offset.dot(offset).max(1e-6).toConst() as Float
     const inverse = square.inverseSqrt().toConst() as Float
     const cosView = offset.dot(view.up).mul(inverse).toConst() as Float
-    const beyond = distanceOf({ hitsGround: cosView.lessThan(view.viewpoint.cosHorizon) as Bool })
+    const beyond = distanceOf({ hitsGround: cosView.lessThan(view.viewpoint.cosHorizon) })
     const distance = isSky.select(beyond, square.mul(inverse)).toConst() as Float
     return { offset, inverse, cosView, distance }
   }

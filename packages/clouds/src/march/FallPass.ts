@@ -185,7 +185,7 @@ function spread(
       const end = endOf(ray, distances)
       const weighted = corners.map(({ at, own, between }) => {
         const fits = own.w.sub(end).smoothstep(...SAME_END)
-        return { at, own, weight: between.mul(fits.add(LEAST_WEIGHT)).toConst() as Float }
+        return { at, own, weight: between.mul(fits.add(LEAST_WEIGHT)).toConst() }
       })
       const weights = weighted.reduce<Float>((sum, { weight }) => sum.add(weight), float(0))
       /** Sums of opacity, and by that of its stretch. */
