@@ -299,10 +299,12 @@ const mappings = (t: GpuContext): [string, ToneMapping][] => [
 async function judge(
   t: GpuContext,
   scenes: readonly ExposureScene[],
-  [darkest, brightest]: readonly [number, number]
+  [darkest, brightest]: readonly [number, number],
+  darkNights = true
 ): Promise<void> {
   const renderer = await t.createRenderer(sceneSize)
   const stage = new ExposureStage(renderer, scenes === nights)
+  stage.exposure.darkNights = darkNights
   renderer.library.addToneMapping(photographicToneMapping(), CustomToneMapping)
   /** Luminance scale, and luminance that it is of, by scene. */
   const exposed = new Map<ExposureScene, readonly [scale: number, metered: number]>()
@@ -343,8 +345,11 @@ gpuTest(
 )
 
 gpuTest(
-  'nights with and without a moon: dark, not black, at most 3 % clipped',
-  async t => judge(t, nights, [0.02, 0.2]),
+  'nights with and without a moon stay dark, not black, and with darkNights off they are shown as days: at most 3 % clipped',
+  async t => {
+    await judge(t, nights, [0.02, 0.2])
+    await judge(t, nights, [0.2, 0.5], false)
+  },
   // What meters is what the test before runs on both.
   { backends: ['webgpu'], timeoutSeconds: 300 }
 )
