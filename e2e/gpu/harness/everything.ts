@@ -337,7 +337,7 @@ export class World {
   /** Scales luminance for the light at the camera, so that half floats hold it. */
   expose(): void {
     const { atmosphere, camera, luna } = this
-    const options = { sources: [atmosphere.sun, luna.source] }
+    const options = { sources: [luna.source] }
     atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera, options)
   }
 
