@@ -35,6 +35,7 @@ import {
   cloudSkyLight,
   cloudWorldMap,
   DropletLightTable,
+  lightning,
   precipitationShafts
 } from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
@@ -371,6 +372,12 @@ it('features of the clouds sample as many textures as their README says', async 
     }, name)
     expect([name, cast]).toEqual([name, textures])
   }
+  const flashing = await inPass(world => {
+    const node = world.clouds()
+    lightning(node)
+    return node
+  })
+  expect([`${flashing - withClouds}`, '0']).toEqual(stated('clouds', '`lightning`'))
   const dimmed = await inLit(world => {
     cloudSkyLight(world.sky, world.clouds())
   })

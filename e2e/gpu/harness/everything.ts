@@ -155,7 +155,8 @@ export class World {
     const shafts = (this.shafts = forwardShafts(atmosphere, camera, sun, { quality: 'low' }))
     const depth = this.#pass.getTextureNode('depth')
     const lit = isMapped ? this.#lightUnlit(depth) : this.#pass.getTextureNode()
-    const air = aerialPerspective(lit, depth, camera, atmosphere, { shafts })
+    // A pass of their own for ground, sky and air: clouds and lightning need room for textures.
+    const air = convertToTexture(aerialPerspective(lit, depth, camera, atmosphere, { shafts }))
     const layers = cloudPreset('mixed', 4)
     // Deep enough for lightning; and ice, for halos.
     layers.at(0).set({ topAltitude: 5000, precipitation: { rate: 5, hail: 0.2, virgaDepth: 2000 } })
@@ -183,7 +184,9 @@ export class World {
     this.#pipeline = new RenderPipeline(renderer)
     this.#pipeline.outputColorTransform = false
     const { transmittance } = this.#clouds
-    const starry = starsOverlay(this.#clouds, depth, camera, atmosphere, { transmittance })
+    const starry = starsOverlay(convertToTexture(this.#clouds), depth, camera, atmosphere, {
+      transmittance
+    })
     const finished = isMapped ? this.#finish(starry) : starry
     this.#pipeline.outputNode = this.exposure = autoExposure(finished, atmosphere)
   }

@@ -39,6 +39,7 @@ import type { Light } from 'three'
 import { ao } from 'three/addons/tsl/display/GTAONode.js'
 import {
   builtinAOContext,
+  convertToTexture,
   float,
   mix,
   mrt,
@@ -301,7 +302,7 @@ export class FeatureStage {
       ? starsOverlay(picture, this.#depth, this.#camera, atmosphere, dimming)
       : picture
     this.#pipeline.outputNode = names.includes('rain')
-      ? precipitationOverlay(starry, this.#camera, [this.#rain])
+      ? precipitationOverlay(convertToTexture(starry), this.#camera, [this.#rain])
       : starry
     this.#pipeline.needsUpdate = true
   }
