@@ -3,15 +3,7 @@ import { expectTrue } from './harness/expect'
 import { featureSize, FeatureStage } from './harness/features'
 import { gpuTest } from './harness/gpu-test'
 import type { Picture } from './harness/picture'
-import {
-  featureNames,
-  features,
-  hours,
-  predict,
-  seen,
-  type FeatureName,
-  type Hour
-} from './harness/predict'
+import { featureNames, hours, predict, seen, type FeatureName, type Hour } from './harness/predict'
 import { watchFragmentShaders } from './harness/shaders'
 
 const SEED = 20_260
@@ -105,7 +97,7 @@ function check(
     if (value >= least - error && value <= most + error) continue
     const alone = parts.map(part => part.value.toPrecision(4)).join(', ')
     const found = `${value.toPrecision(4)}, not in [${least.toPrecision(4)}, ${most.toPrecision(4)}]`
-    wrong ??= `${label}: channel ${i % 4} of (${x}, ${y}) is ${found}; without ${none.data[i].toPrecision(4)}, alone ${alone}`
+    wrong ??= `${label}: channel ${i % 4} of (${x}, ${y}) is ${found}; without ${none.data[i].toPrecision(4)}, alone ${alone}; all of the pixel ${[...drawn.data.subarray(first, first + 3)].map(value => value.toPrecision(3)).join(', ')}`
   }
   return { known: known / (0.75 * drawn.data.length), wrong }
 }

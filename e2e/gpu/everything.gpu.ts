@@ -103,9 +103,11 @@ gpuTest(
     const texturesOf = (from: number): number =>
       Math.max(...shaders.slice(from).flatMap(each => (each.name === LIT ? each.textures : [])))
     const { scene, camera, atmosphere, shafts } = world
+    await world.prepare()
     world.setLights(35, 20)
     world.look(20)
     const everywhere = (): boolean => true
+    const onFloor = (_: number, y: number): boolean => y > 0.7 * size.height
     expectLit(
       await world.draw(),
       everywhere,
@@ -123,9 +125,10 @@ gpuTest(
     const plain = await draw()
     expectLit(plain, everywhere, 'in its own haze')
     const textures = texturesOf(compiled)
-    const { backgroundNode, fogNode } = scene
+    const { fogNode } = scene
     const { scenePass, pipeline } = recipes[0]({ renderer, scene, camera, atmosphere })
-    Object.assign(scene, { backgroundNode, fogNode })
+    // The recipe has air as a post effect; this material draws its own.
+    scene.fogNode = fogNode
     const occluded = new RenderPipeline(renderer)
     occluded.outputColorTransform = false
     occluded.outputNode = scenePass
@@ -133,10 +136,7 @@ gpuTest(
     for (let i = 0; i < 2; i++) {
       await nextFrame()
       const drawn = await drawToFloat(renderer, () => occluded.render())
-      expectLit(drawn, everywhere, 'with ambient occlusion')
-      if (i === 0) continue
-      const rows = [size.height - 1, 0].map(y => drawn.at(size.width >> 1, y)[1])
-      t.note(`ground ${rows[0].toPrecision(3)}, sky ${rows[1].toPrecision(3)}`)
+      expectLit(drawn, onFloor, 'with ambient occlusion')
     }
     const withOcclusion = texturesOf(before)
     t.note(`lit: ${textures} textures, ${withOcclusion} with ambient occlusion`)

@@ -14,7 +14,8 @@ function picture(change: (x: number, y: number, channel: number) => number | nul
   return new Picture(width, height, data)
 }
 
-const all = (): boolean => true
+type Test = (x: number, y: number) => boolean
+const all: Test = () => true
 const check = (drawn: Picture, must = all) => expectLit(drawn, must, 'a picture')
 
 it('passes a picture that has light everywhere', () => {

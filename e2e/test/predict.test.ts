@@ -18,7 +18,8 @@ const alone = (sky: number, layers: readonly Layer[]): Part[] =>
 
 const number = fc.double({ min: 0, max: 4, noNaN: true })
 const share = fc.double({ min: 0, max: 1, noNaN: true })
-const layer = (name: FeatureName, passes = fc.constant(1)): fc.Arbitrary<Layer> =>
+const none: fc.Arbitrary<number> = fc.constant(1)
+const layer = (name: FeatureName, passes = none): fc.Arbitrary<Layer> =>
   fc.record({ name: fc.constant(name), light: number, passes })
 
 it('has what layered light amounts to in its range', () => {
@@ -31,9 +32,11 @@ it('has what layered light amounts to in its range', () => {
   ] as const
   const opaque: readonly FeatureName[] = ['moon', 'distanceFog', 'clouds', 'rain']
   for (const names of sets) {
-    const layers = names.map(name =>
-      layer(name, opaque.includes(name) ? share : fc.constant(1))
-    ) as [fc.Arbitrary<Layer>, fc.Arbitrary<Layer>, fc.Arbitrary<Layer>]
+    const layers = names.map(name => layer(name, opaque.includes(name) ? share : none)) as [
+      fc.Arbitrary<Layer>,
+      fc.Arbitrary<Layer>,
+      fc.Arbitrary<Layer>
+    ]
     fc.assert(
       fc.property(number, ...layers, (sky, ...chosen) => {
         const range = predict(sky, alone(sky, chosen), 1e-9)

@@ -200,7 +200,10 @@ it('features of the atmosphere sample as many textures as its README says', asyn
 })
 
 /** Textures of a lit material with six maps, environment, moonlight, shadows of clouds, light shafts and four cascades. */
-const withSixMaps = (cascades: typeof CSMShadowNode, hasOcclusion: boolean): Promise<number> =>
+const withSixMaps = (
+  cascades: new (...given: ConstructorParameters<typeof CascadedShadowNode>) => Node,
+  hasOcclusion: boolean
+): Promise<number> =>
   count(LIT, renderer => {
     const world = new World()
     const { atmosphere, camera, scene, sun, sky, material } = world

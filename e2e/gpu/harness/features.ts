@@ -39,13 +39,13 @@ import type { Light } from 'three'
 import { ao } from 'three/addons/tsl/display/GTAONode.js'
 import {
   builtinAOContext,
-  convertToTexture,
   float,
   mix,
   mrt,
   normalView,
   output,
   pass,
+  rtt,
   screenUV,
   uniform,
   vec4
@@ -61,7 +61,7 @@ import { drawToFloat } from './atmosphere'
 import { coarse, fog, SparseNoise } from './cloud-view'
 import { nextFrame } from './graphics'
 import type { Picture } from './picture'
-import { featureNames, type FeatureName, type Hour } from './predict'
+import { featureNames, hours, type FeatureName, type Hour } from './predict'
 
 export const featureSize = { width: 32, height: 18 }
 
@@ -245,6 +245,9 @@ export class FeatureStage {
     await renderer.init()
     await this.atmosphere.bake(renderer)
     this.#terrain.update(renderer, this.#camera, Infinity)
+    // A flash has light from the frame after its first on.
+    this.show(['lightning'])
+    for (let i = 0; i < 8 && !this.#storm.isFlashing; i++) await this.draw(hours[2], 0)
   }
 
   /**
@@ -302,7 +305,9 @@ export class FeatureStage {
       ? starsOverlay(picture, this.#depth, this.#camera, atmosphere, dimming)
       : picture
     this.#pipeline.outputNode = names.includes('rain')
-      ? precipitationOverlay(convertToTexture(starry), this.#camera, [this.#rain])
+      ? precipitationOverlay(rtt(starry, null, null, { type: FloatType }), this.#camera, [
+          this.#rain
+        ])
       : starry
     this.#pipeline.needsUpdate = true
   }

@@ -55,8 +55,8 @@ const always: readonly Hour[] = hours
 const bright: readonly Hour[] = [day, dusk]
 
 /**
- * When a feature by itself is seen, and the least share of pixels that it changes then: media fill the air, the Milky Way and
- * airglow the sky; things are where they are.
+ * When a feature by itself is seen, and the least share of pixels that it changes then: media fill the sky, which is half of the picture less
+ * what stands before it; the Milky Way a band of it, airglow all; things are where they are.
  */
 export const seen: Readonly<Record<FeatureName, { at: readonly Hour[]; share: number }>> = {
   stars: { at: [night], share: 0.05 },
@@ -64,7 +64,8 @@ export const seen: Readonly<Record<FeatureName, { at: readonly Hour[]; share: nu
   milkyWay: { at: [night], share: 0.1 },
   airglow: { at: [night], share: 0.4 },
   sunFlare: { at: [day], share: 0.02 },
-  moon: { at: [dusk, night], share: 0.0015 },
+  // Less than a pixel wide.
+  moon: { at: [night], share: 0.0015 },
   nightLight: { at: [night], share: 0.2 },
   moonlight: { at: [night], share: 0.2 },
   occlusion: { at: bright, share: 0.01 },
@@ -72,9 +73,9 @@ export const seen: Readonly<Record<FeatureName, { at: readonly Hour[]; share: nu
   ground: { at: bright, share: 0.01 },
   terrain: { at: bright, share: 0.02 },
   shafts: { at: [day], share: 0.02 },
-  haze: { at: bright, share: 0.5 },
-  heightFog: { at: bright, share: 0.5 },
-  distanceFog: { at: bright, share: 0.5 },
+  haze: { at: bright, share: 0.4 },
+  heightFog: { at: bright, share: 0.4 },
+  distanceFog: { at: bright, share: 0.4 },
   clouds: { at: bright, share: 0.3 },
   lightning: { at: [night], share: 0.05 },
   rain: { at: bright, share: 0.1 }
@@ -150,13 +151,16 @@ export function predict(none: number, parts: readonly Part[], error: number): Ra
     range = throughMedia(range, none, parts, changing)
   }
   if (range === null) return null
+  const has = (kind: Kind): boolean => of(kind, [...parts]).length > 0
   const flash = parts.find(({ name }) => name === 'lightning')
   if (flash !== undefined) {
-    const isInClouds = parts.some(({ name }) => name === 'clouds')
-    const isSeen = changing.includes(flash)
-    if (isInClouds) range = [range[0], Infinity]
-    else if (isSeen) range = shift(range, flash.value - none)
+    const light = Math.max(flash.value - none, 0)
+    if (parts.some(({ name }) => name === 'clouds')) range = [range[0], Infinity]
+    else range = [range[0] + (has('medium') ? 0 : light), range[1] + light]
   }
+  // Ground that is as dark as what it hides hides light all the same.
+  if (has('ground') && of('ground').length === 0)
+    range = [Math.min(range[0], none), Math.max(range[1], none)]
   for (const { value } of of('drops', [...parts])) range = under(range, none, value)
   return [Math.max(range[0], 0), range[1]]
 }
@@ -179,6 +183,13 @@ function throughMedia(
     for (const each of media) if (!own.includes(each)) range = under(range, none, none)
   }
   if (range === null) return null
+  // Media scatter the moon's light, and distance fog has the colour of the sky behind.
+  const scatters = parts.some(
+    part =>
+      kindOf(part) === 'disc' ||
+      (kindOf(part) === 'sky' && media.some(({ name }) => name === 'distanceFog'))
+  )
+  if (media.length > 0 && scatters) range = [range[0], Infinity]
   // Fog that lies in shadow lacks what the shafts take of its own light.
   const isShaded = media.length > 0 && parts.some(part => kindOf(part) === 'shade')
   return isShaded ? [0, range[1]] : range
