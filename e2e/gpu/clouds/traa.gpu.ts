@@ -19,8 +19,8 @@ import type { Picture } from '../harness/picture'
 import { psnr, supersample } from '../harness/supersample'
 
 /** Part of a picture of 960×540 pixels and 60°: clouds and pixels are as large as there. */
-const size = { width: 64, height: 36 }
-const FIELD = 4
+const size = { width: 48, height: 27 }
+const FIELD = 3
 
 /** Turn of a frame, about a pixel [rad]. */
 const TURN = 0.0012
@@ -30,7 +30,7 @@ const SAMPLES = 16
 const BEFORE = 8
 
 /** Frames in which a still picture settles: in each, clouds march one pixel of a block. */
-const settling = { medium: 96, high: 40 } as const
+const settling = { medium: 128, high: 40 } as const
 
 /** Clouds over boxes, under TRAA or not. */
 class CloudyStage {
