@@ -20,7 +20,7 @@ interface Targets {
   readonly depthTexture: DepthTexture
 }
 
-/** What @types/three lacks of `ShadowNode`. */
+/** `ShadowNode` with what @types/three leaves out. */
 type OpenShadowNode = ShadowNode & {
   readonly shadowMap: RenderTarget
   setup(builder: NodeBuilder): Node | null | undefined
@@ -33,7 +33,7 @@ const BaseShadowNode = ShadowNode as unknown as new (
   shadow: DirectionalLightShadow
 ) => OpenShadowNode
 
-/** What @types/three lacks of `CSMShadowNode`. */
+/** `CSMShadowNode` with what @types/three leaves out. */
 type OpenCascades = CSMShadowNode & {
   _shadowNodes: Node[]
   _init(builder: NodeBuilder): void
@@ -157,7 +157,7 @@ export class CascadedShadowNode extends BaseCascades {
 
   /**
    * @param light - Light that casts the shadows; shared, not owned.
-   * @param options - Those of `CSMShadowNode`: `cascades`, `maxFar` [world units], `mode`, `lightMargin`.
+   * @param options - Options of `CSMShadowNode`: `cascades`, `maxFar` [world units], `mode`, `lightMargin` [world units].
    */
   constructor(light: DirectionalLight, options: CSMShadowNodeData = {}) {
     if (light?.shadow?.isDirectionalLightShadow !== true)
