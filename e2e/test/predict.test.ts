@@ -30,9 +30,9 @@ it('has what layered light amounts to in its range', () => {
     ['airglow', 'lightning', 'rain'],
     ['moon', 'clouds', 'lightning']
   ] as const
-  const opaque: readonly FeatureName[] = ['moon', 'distanceFog', 'clouds', 'rain']
+  const opaque = new Set<FeatureName>(['moon', 'distanceFog', 'clouds', 'rain'])
   for (const names of sets) {
-    const layers = names.map(name => layer(name, opaque.includes(name) ? share : none)) as [
+    const layers = names.map(name => layer(name, opaque.has(name) ? share : none)) as [
       fc.Arbitrary<Layer>,
       fc.Arbitrary<Layer>,
       fc.Arbitrary<Layer>

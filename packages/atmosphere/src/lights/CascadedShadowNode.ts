@@ -160,7 +160,7 @@ export class CascadedShadowNode extends BaseCascades {
    * @param options - Options of `CSMShadowNode`: `cascades`, `maxFar` [world units], `mode`, `lightMargin` [world units].
    */
   constructor(light: DirectionalLight, options: CSMShadowNodeData = {}) {
-    if (light?.shadow?.isDirectionalLightShadow !== true)
+    if (!light?.shadow?.isDirectionalLightShadow)
       fail('CascadedShadowNode', 'light must be a DirectionalLight', light)
     super(light, options)
   }
