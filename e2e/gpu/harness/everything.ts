@@ -337,9 +337,10 @@ export class World {
     if (moonAt === null) luna.direction = atmosphere.sunDirection
   }
 
-  /** Scales luminance for the light at the camera, so that half floats hold it. */
+  /** Scales luminance for the light at the camera, so that half floats hold it, and has the environment drawn at once. */
   expose(): void {
     const { atmosphere, camera, luna } = this
+    this.#environment.needsRedraw = true
     const options = { sources: [luna.source] }
     atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera, options)
   }
