@@ -80,8 +80,10 @@ gpuTest(
       const isExposed = after.median > EXPOSED[0] && after.median < EXPOSED[1]
       expectTrue(isExposed, `${name}: the median is ${after.median}`)
       if (sun > -20 || altitude > 1e5) continue
-      world.storm.strike({ kind: 'ground', at: new Vector3(0, 0, -3000) })
+      // A flash begins in a frame, and has light from the next on.
       world.storm.addEventListener('strike', () => (world.storm.time = 0.5))
+      world.storm.strike({ kind: 'ground', at: new Vector3(0, 0, -3000) })
+      await world.draw()
       const lit = await world.draw()
       expectLit(lit, isLit, `${name}, in a flash`)
       const brighter = meanOf(lit) / meanOf(drawn)
