@@ -7,6 +7,8 @@ import {
   aerialPerspectiveFog,
   airglow,
   airStyle,
+  CascadedShadowNode,
+  cascadedShadow,
   distanceFog,
   droplets,
   forwardShafts,
@@ -54,8 +56,10 @@ import {
   RepeatWrapping,
   Scene
 } from 'three'
-import { pass, shadow } from 'three/tsl'
-import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
+import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
+import { ao } from 'three/addons/tsl/display/GTAONode.js'
+import { builtinAOContext, pass, screenUV, shadow } from 'three/tsl'
+import { NodeMaterial, RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
 import { readFileSync } from 'node:fs'
 import { expect, it } from 'vitest'
 import { recordingRenderer } from '../headless/recordingContext'
@@ -195,6 +199,57 @@ it('features of the atmosphere sample as many textures as its README says', asyn
     sun.castShadow = true
   })
   expect(['–', `${shadows - inMaterial}`]).toEqual(stated('atmosphere', 'Each shadow map'))
+  const cascades = await inLit(({ sun }) => {
+    sun.castShadow = true
+    Object.assign(sun.shadow, { shadowNode: cascadedShadow(sun, { cascades: 5, maxFar: 100 }) })
+  })
+  expect(['–', `${cascades - inMaterial}`]).toEqual(stated('atmosphere', '`cascadedShadow`'))
+})
+
+/** Textures of a lit material with six maps, environment, moonlight, shadows of clouds, light shafts and four cascades. */
+const withSixMaps = (
+  cascades: new (...given: ConstructorParameters<typeof CascadedShadowNode>) => Node,
+  hasOcclusion: boolean
+): Promise<number> =>
+  count(LIT, renderer => {
+    const world = new World()
+    const { atmosphere, camera, scene, sun, sky, material } = world
+    for (const slot of ['map', 'normalMap', 'roughnessMap', 'metalnessMap', 'aoMap', 'emissiveMap'])
+      Object.assign(material, { [slot]: picture() })
+    const luna = moon()
+    atmosphere.add(luna)
+    const moonlight = new MoonDirectionalLight(atmosphere, luna, 50)
+    scene.add(moonlight, new SkyLightProbe(atmosphere, luna.source))
+    scene.environmentNode = skyEnvironment(atmosphere)
+    scene.fogNode = aerialPerspectiveFog(atmosphere)
+    sun.castShadow = moonlight.castShadow = true
+    const node = world.clouds()
+    const four = new cascades(sun, { cascades: 4, maxFar: 100 })
+    Object.assign(sun.shadow, { shadowNode: cloudShadow(node, four) })
+    const moonShadow = cloudShadow(node, shadow(moonlight), luna.source)
+    Object.assign(moonlight.shadow, { shadowNode: moonShadow })
+    cloudSkyLight(sky, node)
+    atmosphere.add(forwardShafts(atmosphere, camera, sun).add(cloudAirShadow(node)))
+    const scenePass = pass(scene, camera, { samples: 0 })
+    if (hasOcclusion) {
+      const before = pass(scene, camera, { samples: 0 })
+      before.overrideMaterial = new NodeMaterial()
+      const occlusion = ao(before.getTextureNode('depth'), before.getTextureNode(), camera)
+      scenePass.contextNode = builtinAOContext(occlusion.getTextureNode().sample(screenUV).r)
+    }
+    const pipeline = new RenderPipeline(renderer)
+    pipeline.outputNode = scenePass
+    return () => pipeline.render()
+  })
+
+it('a lit material with six maps has all light at once, and room for ambient occlusion in one map of cascades', async () => {
+  expect(await withSixMaps(CSMShadowNode, false)).toBe(16)
+  const [without, occluded] = [false, true].map(has => withSixMaps(CascadedShadowNode, has))
+  expect(await without).toBe(13)
+  expect(`${(await occluded) - (await without)}`).toBe(stated('atmosphere', "three's GTAO")[1])
+  const text = readFileSync(new URL('../../packages/atmosphere/README.md', import.meta.url), 'utf8')
+  expect(text).toContain('has room for two')
+  expect(16 - (await occluded)).toBe(2)
 })
 
 it('light of surfaces and shafts sample as many textures as the README says', async () => {
@@ -328,12 +383,12 @@ it('features of the clouds sample as many textures as their README says', async 
     }, name)
     expect([name, cast]).toEqual([name, textures])
   }
-  const flashes = await inPass(world => {
+  const flashing = await inPass(world => {
     const node = world.clouds()
     lightning(node)
     return node
   })
-  expect([`${flashes - withClouds}`, '0']).toEqual(stated('clouds', '`lightning`'))
+  expect([`${flashing - withClouds}`, '0']).toEqual(stated('clouds', '`lightning`'))
   const dimmed = await inLit(world => {
     cloudSkyLight(world.sky, world.clouds())
   })

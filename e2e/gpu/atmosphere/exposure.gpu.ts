@@ -295,28 +295,39 @@ const mappings = (t: GpuContext): [string, ToneMapping][] => [
     : [])
 ]
 
-/** Checks scenes' tones as viewers see them. */
-async function judge(
-  t: GpuContext,
+/** A scene, how nights are shown, and the least and greatest mean of its picture. */
+interface Judged {
+  scene: ExposureScene
+  darkNights: boolean
+  range: readonly [number, number]
+}
+
+const judged = (
   scenes: readonly ExposureScene[],
-  [darkest, brightest]: readonly [number, number]
-): Promise<void> {
+  range: Judged['range'],
+  darkNights = true
+): Judged[] => scenes.map(scene => ({ scene, darkNights, range }))
+
+/** Checks scenes' tones as viewers see them. */
+async function judge(t: GpuContext, all: readonly Judged[]): Promise<void> {
   const renderer = await t.createRenderer(sceneSize)
-  const stage = new ExposureStage(renderer, scenes === nights)
+  const stage = new ExposureStage(renderer, nights.includes(all[0].scene))
   renderer.library.addToneMapping(photographicToneMapping(), CustomToneMapping)
   /** Luminance scale, and luminance that it is of, by scene. */
-  const exposed = new Map<ExposureScene, readonly [scale: number, metered: number]>()
+  const exposed = new Map<Judged, readonly [scale: number, metered: number]>()
   for (const [name, toneMapping] of mappings(t)) {
     renderer.toneMapping = toneMapping
     stage.refresh()
-    for (const scene of scenes) {
+    for (const each of all) {
+      const { scene, darkNights, range } = each
       stage.show(scene)
-      const before = exposed.get(scene)
+      stage.exposure.darkNights = darkNights
+      const before = exposed.get(each)
       if (before === undefined) {
         // From a scale for daylight; half floats hold no night in that.
         stage.atmosphere.luminanceScale = DAYLIGHT
         await stage.settle(4)
-        exposed.set(scene, [stage.atmosphere.luminanceScale, stage.exposure.luminance!])
+        exposed.set(each, [stage.atmosphere.luminanceScale, stage.exposure.luminance!])
       } else {
         stage.atmosphere.luminanceScale = before[0]
         await nextFrame()
@@ -326,11 +337,12 @@ async function judge(
       const picture = await t.capture(renderer, () => stage.draw())
       const { mean, clipped } = tonesOf(picture.data, 1)
       const figures = `mean ${mean.toFixed(3)}, clipped ${(100 * clipped).toFixed(2)} %`
-      const metered = exposed.get(scene)![1].toPrecision(3)
-      const label = `${scene.name}, ${metered} cd/m², ${name}: ${figures}`
+      const metered = exposed.get(each)![1].toPrecision(3)
+      const shown = `${scene.name}${darkNights ? '' : ' as a day'}`
+      const label = `${shown}, ${metered} cd/m², ${name}: ${figures}`
       t.note(label)
       expectTrue(clipped <= 0.03, label)
-      expectTrue(mean >= darkest && mean <= brightest, label)
+      expectTrue(mean >= range[0] && mean <= range[1], label)
     }
   }
   stage.dispose()
@@ -338,13 +350,13 @@ async function judge(
 
 gpuTest(
   'days, faced suns, snow and orbit: at most 3 % clipped, mean 0.2 to 0.5',
-  async t => judge(t, days, [0.2, 0.5]),
+  async t => judge(t, judged(days, [0.2, 0.5])),
   { timeoutSeconds: 300 }
 )
 
 gpuTest(
-  'nights with and without a moon: dark, not black, at most 3 % clipped',
-  async t => judge(t, nights, [0.02, 0.2]),
+  'nights with and without a moon stay dark, not black, and with darkNights off they are shown as days: at most 3 % clipped',
+  async t => judge(t, [...judged(nights, [0.02, 0.2]), ...judged(nights, [0.2, 0.5], false)]),
   // What meters is what the test before runs on both.
   { backends: ['webgpu'], timeoutSeconds: 300 }
 )

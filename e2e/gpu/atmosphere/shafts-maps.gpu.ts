@@ -1,9 +1,12 @@
+import { cascadedShadow, CascadedShadowNode } from '@welkin/atmosphere'
 import { PCFShadowMap, VSMShadowMap } from 'three'
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
 import { quantile } from '../../validate/score'
+import { drawToFloat } from '../harness/atmosphere'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import type { Picture } from '../harness/picture'
+import { watchFragmentShaders } from '../harness/shaders'
 import { addBox, expectSame, stage, stageSize as size } from '../harness/shaft-stage'
 
 gpuTest(
@@ -36,27 +39,27 @@ gpuTest(
   }
 )
 
-gpuTest("reads three's cascades as it reads one map", async t => {
+gpuTest("reads three's cascades, and those in one map, as it reads one map", async t => {
   const renderer = await t.createRenderer(size)
   const pictures: Picture[] = []
-  for (const kind of ['map', 'cascades', 'lit']) {
+  const options = { cascades: 3, maxFar: 3000, lightMargin: 2000 }
+  for (const kind of ['map', 'cascades', 'one map', 'lit']) {
     const { scene, light, draw, shafts, dispose } = stage(renderer, 15)
     // As fine as cascades: edges of coarser texels are elsewhere.
     light.shadow.mapSize.setScalar(2048)
     const tower = addBox(scene, [-100, 200, -600], [150, 500, 60])
     // Not seen itself: its own front is where shadow maps of other texels differ.
     Object.assign(tower.material, { colorWrite: false, depthWrite: false })
-    if (kind === 'cascades') {
-      const shadowNode = new CSMShadowNode(light, { cascades: 3, maxFar: 3000, lightMargin: 2000 })
-      Object.assign(light.shadow, { shadowNode })
-    }
+    const shadowNode =
+      kind === 'cascades' ? new CSMShadowNode(light, options) : cascadedShadow(light, options)
+    if (kind === 'cascades' || kind === 'one map') Object.assign(light.shadow, { shadowNode })
     if (kind === 'lit') shafts.enabled = false
     // CSM draws the cascades of a frame where it has put them in the frame before.
     await draw()
     pictures.push(await draw())
     dispose()
   }
-  const [map, cascades, lit] = pictures
+  const [map, cascades, oneMap, lit] = pictures
   const apart = (a: Picture, b: Picture): number[] =>
     [...a.data].map((value, i) => Math.abs(value - b.data[i]) / (lit.data[i] + 1e-6))
   const [errors, shadows] = [apart(cascades, map), apart(map, lit)].map(all => quantile(all, 0.98))
@@ -65,7 +68,52 @@ gpuTest("reads three's cascades as it reads one map", async t => {
   )
   expectTrue(shadows > 0.02, 'the tower casts a shadow')
   expectTrue(errors < 0.03 * shadows, 'cascades')
+  const most = Math.max(...apart(oneMap, cascades))
+  t.note(`cascades in one map: ${most.toExponential(1)} apart`)
+  expectTrue(most < 1e-3, 'cascades in one map')
 })
+
+gpuTest(
+  "surfaces have the shadows of three's cascades from one map, with one texture in place of four",
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const shaders = watchFragmentShaders(renderer)
+    const drawn: { picture: Picture; textures: number }[] = []
+    for (const makes of [null, CSMShadowNode, CascadedShadowNode]) {
+      const { scene, camera, light, dispose } = stage(renderer, 25)
+      // Of four cascades, each has some of these towers and their shadows.
+      for (const [i, z] of [-25, -70, -150, -260].entries())
+        addBox(scene, [24 * i - 30, 0, z], [0.3 * -z, -0.4 * z, 6])
+      addBox(scene, [0, -1, -200], [400, 2, 600])
+      camera.position.y = 20
+      light.castShadow = makes !== null
+      light.shadow.mapSize.set(512, 256)
+      if (makes) {
+        const shadowNode = new makes(light, { cascades: 4, maxFar: 400 })
+        Object.assign(light.shadow, { shadowNode })
+      }
+      const first = shaders.length
+      // CSM draws the cascades of a frame where it has put them in the frame before.
+      for (let i = 0; i < 2; i++) await drawToFloat(renderer, () => renderer.render(scene, camera))
+      const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
+      drawn.push({
+        picture,
+        textures: Math.max(...shaders.slice(first).map(each => each.textures))
+      })
+      dispose()
+    }
+    const [lit, three, one] = drawn
+    const share = (a: Picture, b: Picture, part: number): number =>
+      a.data.filter((value, i) => Math.abs(value - b.data[i]) > part * value).length / a.data.length
+    const shadowed = share(lit.picture, three.picture, 0.5)
+    const apart = share(three.picture, one.picture, 0.01)
+    t.note(`${(100 * shadowed).toFixed(1)} % in shadow, ${(100 * apart).toFixed(2)} % apart`)
+    expectTrue(shadowed > 0.03, `${shadowed} are in shadow`)
+    // A texel's place in the atlas is rounded.
+    expectTrue(apart < 0.002, `${apart} differ`)
+    expectTrue(three.textures - one.textures === 3, `${three.textures}, and ${one.textures}`)
+  }
+)
 
 // WebGPU loads depths, whatever they are; WebGL compares with those that are made for that.
 gpuTest(

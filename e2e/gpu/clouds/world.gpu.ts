@@ -309,10 +309,10 @@ gpuTest(
       const world = new Vector3(sine * Math.cos(angle), up, sine * Math.sin(angle))
       return atmosphere.space.direction(world, new Vector3()).toArray()
     })
-    const lights = await evaluateOnGpu(renderer, rays, ({ xyz }) =>
+    const sentDown = await evaluateOnGpu(renderer, rays, ({ xyz }) =>
       vec4(overlay.over(viewNodes(atmosphere, camera), xyz, vec4(0).xyz), 1)
     )
-    const marched = rays.reduce((sum, _, i) => sum + lights[4 * i + 1], 0) / rays.length
+    const marched = rays.reduce((total, _, i) => total + sentDown[4 * i + 1], 0) / rays.length
     t.note(`marched ${marched.toFixed(3)}, mirrored ${mirrored[1].toFixed(3)}`)
     expectClose(grey, marched, { relative: 0.15 }, 'light from marched clouds')
     expectTrue(mirrored[2] < 1.2 * mirrored[0], `clouds are mirrored blue: ${mirrored.join(' ')}`)
@@ -336,13 +336,15 @@ gpuTest(
       viewDirection.unproject(camera).sub(camera.position).normalize()
       return atmosphere.space.direction(viewDirection, new Vector3()).toArray()
     })
-    const overlaid = await evaluateOnGpu(renderer, directions, ({ xyz }) =>
-      vec4(overlay.over(viewNodes(atmosphere, camera), xyz, vec4(0).xyz), 1)
-    )
-    const likeness = correlation(
-      directions.map((_, i) => overlaid[4 * i + 1]),
-      directions.map((_, i) => picture.data[4 * i + 1])
-    )
+    /** Green light of the clouds in the environment map, where the camera's pixels look. */
+    const overlaid = async (): Promise<number[]> => {
+      const found = await evaluateOnGpu(renderer, directions, ({ xyz }) =>
+        vec4(overlay.over(viewNodes(atmosphere, camera), xyz, vec4(0).xyz), 1)
+      )
+      return directions.map((_, i) => found[4 * i + 1])
+    }
+    const greens = ({ data }: Picture): number[] => directions.map((_, i) => data[4 * i + 1])
+    const likeness = correlation(await overlaid(), greens(picture))
     t.note(`alike by ${likeness.toFixed(2)}`)
     expectTrue(likeness > 0.5, `overlay and picture are alike by ${likeness}`)
 
@@ -367,6 +369,41 @@ gpuTest(
     luna.direction = towards(50, 62)
     await draw()
     expectTrue(overlay.version > drawn, 'a moon that moves by night does not count')
+
+    // By moonlight, too, clouds are mirrored, where the camera sees them; without the moon there are none.
+    const mirrorAnew = async (): Promise<{ map: number[]; mirror: number[]; seen: Picture }> => {
+      await draw()
+      for (let i = 0; i < overlay.steps + 15; i++) renderer.render(scene, planeCamera)
+      const mirror = (await look(2, 1)).at(12, 8)
+      return { map: await overlaid(), mirror, seen: await draw() }
+    }
+    const sum = (values: readonly number[]): number => values.reduce((a, b) => a + b)
+    // Half floats of the map hold a night at its exposure.
+    atmosphere.luminanceScale = 1
+    const clear = await mirrorAnew()
+    layers.at(0).set({ coverage: 0.5 })
+    const broken = await mirrorAnew()
+    const alike = correlation(broken.map, greens(broken.seen))
+    // No gap in the zenith, which the mirror shows.
+    layers.at(0).set({ coverage: 1 })
+    const byMoon = await mirrorAnew()
+    luna.phase = 0
+    const without = await mirrorAnew()
+    const lights = [clear, byMoon, without]
+    const [, inMap, inDark] = lights.map(({ map }) => sum(map))
+    const [none, inMirror, mirroredDark] = lights.map(({ mirror }) => mirror[1])
+    t.note(
+      `moonlit: alike by ${alike.toFixed(2)}, ${(inDark / inMap).toExponential(1)} without moon`
+    )
+    expectTrue(sum(clear.map) === 0, `a clear sky has clouds of ${sum(clear.map)}`)
+    expectTrue(alike > 0.5, `by moonlight overlay and picture are alike by ${alike}`)
+    // A new moon has no light, and the night sky was switched off above.
+    expectTrue(inMap > 0 && inDark < 0.02 * inMap, `${inMap} by moonlight, ${inDark} without`)
+    expectTrue(
+      inMirror > 2 * none,
+      `a mirror has ${inMirror} of clouds by moonlight, ${none} of none`
+    )
+    expectTrue(mirroredDark < 0.1 * inMirror, `${inMirror} by moonlight, ${mirroredDark} without`)
 
     cloudy.dispose()
     expectTrue(probe.overcast === null, 'the probe keeps its clouds')

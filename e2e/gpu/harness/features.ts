@@ -11,16 +11,20 @@ import {
   MoonDirectionalLight,
   NightLightProbe,
   planetGround,
+  precipitationOverlay,
   proceduralStars,
+  rainfall,
   SkyLightProbe,
   Stars,
   starsOverlay,
   SunDirectionalLight,
-  sunFlare
+  sunFlare,
+  surfaceLighting
 } from '@welkin/atmosphere'
-import type { Moon, SkyLayer } from '@welkin/atmosphere'
-import { CloudLayers, clouds } from '@welkin/clouds'
+import type { Moon, SkyLayer, SurfaceLightingNode } from '@welkin/atmosphere'
+import { CloudLayers, clouds, lightning } from '@welkin/clouds'
 import type { CloudQuality } from '@welkin/clouds'
+import { latticeNoise, latticeNoiseOnCPU, Terrain, type HeightSource } from '@welkin/terrain'
 import {
   BoxGeometry,
   FloatType,
@@ -31,52 +35,66 @@ import {
   Scene,
   Vector3
 } from 'three'
-import { pass } from 'three/tsl'
-import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
+import type { Light } from 'three'
+import { ao } from 'three/addons/tsl/display/GTAONode.js'
+import {
+  builtinAOContext,
+  float,
+  mix,
+  mrt,
+  normalView,
+  output,
+  pass,
+  rtt,
+  screenUV,
+  uniform,
+  vec4
+} from 'three/tsl'
+import {
+  MeshBasicNodeMaterial,
+  NodeMaterial,
+  RenderPipeline,
+  type Node,
+  type WebGPURenderer
+} from 'three/webgpu'
 import { drawToFloat } from './atmosphere'
 import { coarse, fog, SparseNoise } from './cloud-view'
 import { nextFrame } from './graphics'
 import type { Picture } from './picture'
+import { featureNames, hours, type FeatureName, type Hour } from './predict'
 
 export const featureSize = { width: 32, height: 18 }
 
-/**
- * Action of a feature on what the others draw: adds its light to theirs; dims it and adds its own; changes it where it changes
- * the picture; bends it everywhere, so that nothing is known of pixels that others change.
- */
-export type Action = 'adds' | 'dims' | 'changes' | 'bends'
+/** Longitude and latitude of the stage [°]. */
+const PLACE = [8, 46] as const
+/** Time over which light of a flash is gathered [s]. */
+const EXPOSURE = 0.5
 
-/** Features that may be on together, and how each acts. */
-export const features = {
-  stars: 'adds',
-  starsOverlay: 'adds',
-  milkyWay: 'adds',
-  airglow: 'adds',
-  sunFlare: 'adds',
-  nightLight: 'adds',
-  moonlight: 'adds',
-  moon: 'changes',
-  ground: 'changes',
-  haze: 'bends',
-  shafts: 'changes',
-  heightFog: 'dims',
-  distanceFog: 'dims',
-  clouds: 'dims'
-} as const satisfies Record<string, Action>
+/** Hills of a terrain: their wavelength [m], and half of the height between valleys and summits [m]. */
+const HILLS = 8192
+const HEIGHT = 400
 
-export type FeatureName = keyof typeof features
-
-/** Far before near, and media last. */
-export const featureNames = Object.keys(features) as FeatureName[]
-
-/** Hours that features are drawn at, by the elevations of sun and moon [°]. */
-export const hours = [
-  { name: 'by day', sun: 25, moon: 40, scale: 1e-4 },
-  { name: 'at dusk', sun: -4, moon: 20, scale: 1e-1 },
-  { name: 'at night', sun: -30, moon: 30, scale: 1e2 }
-] as const
-
-export type Hour = (typeof hours)[number]
+/** Hills that pass below the origin by 10 m, at a place where they have a height of `offset` [m]. */
+function hills(offset: number): HeightSource {
+  const noise = { x: 0, y: 0, z: 0, value: 0 }
+  return {
+    lowest: -2 * HEIGHT - 10,
+    highest: 2 * HEIGHT,
+    variation: distance => (3 * HEIGHT * distance) / HILLS,
+    sampleAt({ x, y, z }, target) {
+      latticeNoiseOnCPU(x, y, z, 1 / HILLS, 0, noise)
+      target.height = HEIGHT * noise.value - offset - 10
+      target.gradient.set(noise.x, noise.y, noise.z).multiplyScalar(HEIGHT / HILLS)
+      return target
+    },
+    sample({ reference, offset: from }, shortest) {
+      const { xyz, w } = latticeNoise(reference, from, float(1 / HILLS), float(0))
+      const kept = float(HILLS).div(shortest).sub(1).clamp(0, 1)
+      const level = vec4(0, 0, 0, offset + 10)
+      return vec4(xyz.div(HILLS), w).mul(kept.mul(HEIGHT)).sub(level)
+    }
+  }
+}
 
 /** Steps so short that their random offsets, others in each frame, do not show. */
 const fine: CloudQuality = {
@@ -107,7 +125,7 @@ function skyLayers(luna: Moon) {
 
 /** A box on a floor before the sky, with any of the features. */
 export class FeatureStage {
-  readonly atmosphere = new Atmosphere().place({ longitude: 8, latitude: 46 })
+  readonly atmosphere = new Atmosphere().place({ longitude: PLACE[0], latitude: PLACE[1] })
   readonly #scene = new Scene()
   readonly #camera = new PerspectiveCamera(70, featureSize.width / featureSize.height, 1, 1e5)
   readonly #pass = pass(this.#scene, this.#camera, { samples: 0, type: FloatType })
@@ -116,12 +134,19 @@ export class FeatureStage {
   readonly #moons = [moon({ mapSize: 32 }), moon({ mapSize: 32 })] as const
   readonly #layers = skyLayers(this.#moons[0])
   readonly #lights
+  readonly #sky = new SkyLightProbe(this.atmosphere)
   readonly #shafts
+  readonly #terrain
+  readonly #tiles
+  readonly #rain
+  readonly #storm
+  /** Strength of the ambient occlusion. */
+  readonly #occlusion = uniform(0)
   readonly #air: { plain: Node; shafts: Node }
   readonly #cloudLayers = new CloudLayers([{ ...fog, baseAltitude: 300, density: 1e-3 }])
   readonly #clouds
   readonly #depth
-  readonly #owned: { dispose(): void }[]
+  readonly #owned: { dispose(): void }[] = []
   #names: readonly FeatureName[] = []
   #compiled = ''
 
@@ -139,7 +164,7 @@ export class FeatureStage {
     const moonlight = new MoonDirectionalLight(atmosphere, this.#moons[1], 400)
     const nightLight = new NightLightProbe(atmosphere)
     this.#lights = { moonlight, nightLight }
-    scene.add(sun, new SkyLightProbe(atmosphere), moonlight, nightLight)
+    scene.add(sun, this.#sky, moonlight, nightLight)
     const material = new MeshStandardMaterial({ name: 'lit', roughness: 1 })
     const tower = new Mesh(new BoxGeometry(60, 120, 60), material)
     tower.position.set(-60, 60, -250)
@@ -151,7 +176,10 @@ export class FeatureStage {
     camera.updateMatrixWorld()
 
     const depth = (this.#depth = this.#pass.getTextureNode('depth'))
-    const drawn = this.#pass.getTextureNode()
+    const sky = this.#sky
+    const drawn = (this.#tiles = this.#lightTiles(depth, [sun, sky]))
+    this.#occlude()
+    this.#terrain = this.#addTerrain()
     const shafts = (this.#shafts = lightShafts(atmosphere, camera, sun))
     this.#air = {
       plain: aerialPerspective(drawn, depth, camera, atmosphere),
@@ -160,10 +188,66 @@ export class FeatureStage {
     const noise = new SparseNoise()
     const options = { quality: fine, noise, time: 0, accumulates: false }
     this.#clouds = clouds(this.#air.shafts, depth, camera, atmosphere, this.#cloudLayers, options)
+    const storm = lightning(this.#clouds, { limit: null, exposure: EXPOSURE, time: 0, seed: 9 })
+    this.#storm = storm
+    // From then on the flash stays as it is.
+    storm.addEventListener('strike', () => (storm.time = EXPOSURE))
+    storm.strike({ kind: 'ground', at: new Vector3(300, 0, -3000) })
+    const weather = { lights: [sun, sky], depth, depthCamera: camera, maxParticles: 4000, time: 10 }
+    this.#rain = rainfall(atmosphere, { rate: 0, ...weather })
     this.#pipeline = new RenderPipeline(renderer)
     this.#pipeline.outputColorTransform = false
-    this.#owned = [sun, moonlight, nightLight, shafts, noise, material]
-    this.#owned.push(tower.geometry, floor.geometry)
+    this.#owned.push(sun, moonlight, nightLight, shafts, noise, material)
+    this.#owned.push(tower.geometry, floor.geometry, storm, this.#rain)
+  }
+
+  /** A box that is not lit by its material, as a photographed one, and the light on it. */
+  #lightTiles(depth: Node, lights: Light[]): SurfaceLightingNode {
+    const photographed = new MeshBasicNodeMaterial({ color: 0x888888 })
+    photographed.mrtNode = mrt({ unlit: vec4(1) })
+    const tile = new Mesh(new BoxGeometry(60, 60, 60), photographed)
+    tile.position.set(90, 30, -250)
+    this.#scene.add(tile)
+    this.#pass.setMRT(mrt({ output, unlit: vec4(0) }))
+    const mask = this.#pass.getTextureNode('unlit').r
+    this.#owned.push(photographed, tile.geometry)
+    const color = this.#pass.getTextureNode()
+    return surfaceLighting(color, depth, this.#camera, lights, { mask, strength: 0 })
+  }
+
+  /** Three's ambient occlusion, as the README has it. */
+  #occlude(): void {
+    const before = pass(this.#scene, this.#camera, { samples: 0 })
+    const normals = new NodeMaterial()
+    normals.fragmentNode = vec4(normalView, 1)
+    before.overrideMaterial = normals
+    const [depth, normal] = [before.getTextureNode('depth'), before.getTextureNode()]
+    const occlusion = ao(depth, normal, this.#camera)
+    occlusion.radius.value = 40
+    const { r } = occlusion.getTextureNode().sample(screenUV)
+    this.#pass.contextNode = builtinAOContext(mix(1, r, this.#occlusion))
+    this.#owned.push(before, normals, occlusion)
+  }
+
+  #addTerrain(): Terrain {
+    const [longitude, latitude] = PLACE
+    const height = new Terrain(this.atmosphere, hills(0)).heightAt(longitude, latitude) + 10
+    const options = { pageMemory: 20, seaLevel: -Infinity }
+    const terrain = new Terrain(this.atmosphere, hills(height), options)
+    this.#scene.add(terrain)
+    this.#owned.push(terrain)
+    return terrain
+  }
+
+  /** Makes the ground and the tables of the air. */
+  async prepare(): Promise<void> {
+    const { renderer } = this
+    await renderer.init()
+    await this.atmosphere.bake(renderer)
+    this.#terrain.update(renderer, this.#camera, Infinity)
+    // A flash has light from the frame after its first on.
+    this.show(['lightning'])
+    for (let i = 0; i < 8 && !this.#storm.isFlashing; i++) await this.draw(hours[2], 0)
   }
 
   /**
@@ -188,6 +272,11 @@ export class FeatureStage {
     this.#lights.nightLight.intensity = on('nightLight')
     this.#shafts.enabled = on('shafts') === 1
     this.#cloudLayers.at(0).set({ coverage: on('clouds') })
+    this.#occlusion.value = on('occlusion')
+    this.#tiles.strength = on('surfaceLighting')
+    this.#terrain.visible = on('terrain') === 1
+    this.#storm.enabled = on('lightning') === 1
+    this.#rain.rate = 25 * on('rain')
     const isThere = (name: FeatureName): boolean =>
       names.includes(name) || (others === 'off' && name !== 'ground')
     this.#compile(featureNames.filter(isThere))
@@ -209,12 +298,17 @@ export class FeatureStage {
     }
     const air = names.includes('shafts') ? this.#air.shafts : this.#air.plain
     this.#clouds.colorNode = air
-    const hasClouds = names.includes('clouds')
+    const hasClouds = names.includes('clouds') || names.includes('lightning')
     const picture = hasClouds ? this.#clouds : air
     const dimming = hasClouds ? { transmittance: this.#clouds.transmittance } : {}
-    this.#pipeline.outputNode = names.includes('starsOverlay')
+    const starry = names.includes('starsOverlay')
       ? starsOverlay(picture, this.#depth, this.#camera, atmosphere, dimming)
       : picture
+    this.#pipeline.outputNode = names.includes('rain')
+      ? precipitationOverlay(rtt(starry, null, null, { type: FloatType }), this.#camera, [
+          this.#rain
+        ])
+      : starry
     this.#pipeline.needsUpdate = true
   }
 

@@ -42,6 +42,7 @@ export type { AirOptions, AirShadows, ScreenShadows, ForegroundLayer } from './v
 export { LightSource } from './view/LightSource'
 export type { LayerRay, PointRay, ShadowedMedium, SkyLayer, SkyRay } from './view/SkyLayer'
 export { SunDirectionalLight } from './lights/SunDirectionalLight'
+export { CascadedShadowNode, cascadedShadow } from './lights/CascadedShadowNode'
 export { SkyLightProbe } from './lights/SkyLightProbe'
 export type { SkyLitPlane } from './lights/SkyLightProbe'
 export { SurfaceLightingNode, surfaceLighting } from './lights/SurfaceLightingNode'
