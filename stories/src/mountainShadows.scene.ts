@@ -65,8 +65,10 @@ export async function createMountainShadows(
   const ground = new GroundCamera(camera, canvas, terrain, args.frame)
   const { picture, depth, pipeline } = post
   // #region mountain shadows
+  // #shown const terrain = new Terrain(atmosphere, new MountainHeights())
   const mountains = groundShadow(atmosphere, terrain) // of 100 km about the camera
-  const shafts = lightShafts(atmosphere, camera, sun).add(mountains) // into the air, and onto the ground:
+  const shafts = lightShafts(atmosphere, camera, sun).add(mountains) // in the air
+  // And on the ground.
   Object.assign(sun.shadow, { shadowNode: terrainShadow(mountains, sun, shadow(sun)) })
   // #shown const picture = scenePass.getTextureNode() // without its air
   pipeline.outputNode = aerialPerspective(picture, depth, camera, atmosphere, { shafts })

@@ -157,14 +157,12 @@ export async function createTerrain(
   prepareShadow(sun)
   let onGround: Node = shadow(sun)
   let color: Node | undefined = post?.color
-  // #region terrain shadows
   const mountains = args.shafts ? groundShadow(atmosphere, terrain) : undefined
   const shafts = mountains && lightShafts(atmosphere, camera, sun).add(mountains)
   if (mountains && shafts && post) {
     onGround = terrainShadow(mountains, sun, onGround)
     color = aerialPerspective(post.picture, post.depth, camera, atmosphere, { shafts })
   }
-  // #endregion
   let cloudsNode: CloudsNode | undefined
   if (args.clouds && post && color) {
     const layers = cloudPreset('fairWeather')
