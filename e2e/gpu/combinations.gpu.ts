@@ -211,7 +211,7 @@ gpuTest(
     const alone = sets.filter(set => !isCloudy(set)).slice(0, ALONE)
     for (const { names, hour } of alone) {
       stage.show(names, 'absent')
-      const apart = difference(await stage.draw(hour, CLOUDS_WARM_UP), pictureOf(names, hour))
+      const apart = difference(await stage.draw(hour, WARM_UP), pictureOf(names, hour))
       if (apart > OFF_TOLERANCE)
         wrong.push(`${keyOf(names, hour)}: ${apart} apart without the others`)
     }

@@ -98,8 +98,8 @@ export const worldSize = { width: 32, height: 18 }
 /** Name of the material that lights and shadows fall on. */
 export const LIT = 'lit'
 
-/** Altitude below which a view ray meets air that the sun, the moon or the airglow above it lights [m]. */
-const AIR = 50_000
+/** Altitude below which a view ray that goes past the planet has air that is as good as opaque: two scale heights higher it has a tenth of its light [m]. */
+const AIR = 20_000
 
 /** A small picture, other than all others. */
 function picture(seed: number): DataTexture {
@@ -316,11 +316,11 @@ export class World {
     this.camera.updateMatrixWorld()
   }
 
-  /** True for pixels in whose direction there is ground, or air that something lights. */
+  /** True for pixels that ground or air fills, wherever TRAA's jitter has them: by the ray a pixel above. */
   readonly isAir = (x: number, y: number): boolean => {
     const { camera, atmosphere } = this
     const { width, height } = worldSize
-    const place = new Vector3((2 * (x + 0.5)) / width - 1, 1 - (2 * (y + 0.5)) / height, 0.5)
+    const place = new Vector3((2 * (x + 0.5)) / width - 1, 1 - (2 * (y - 0.5)) / height, 0.5)
     const direction = place.unproject(camera).sub(camera.position).normalize()
     const radius = atmosphere.parameters.bottomRadius
     const [from, cosView] = [radius + camera.position.y, direction.y]

@@ -30,6 +30,7 @@ import {
   FloatType,
   Mesh,
   MeshStandardMaterial,
+  NearestFilter,
   PerspectiveCamera,
   PlaneGeometry,
   Scene,
@@ -95,6 +96,9 @@ function hills(offset: number): HeightSource {
     }
   }
 }
+
+/** Options of a texture whose pixels are read as they are: bilinear look-ups of software mix in 1/256 of a bright neighbour. */
+const exactly = { type: FloatType, minFilter: NearestFilter, magFilter: NearestFilter }
 
 /** Steps so short that their random offsets, others in each frame, do not show. */
 const fine: CloudQuality = {
@@ -305,9 +309,7 @@ export class FeatureStage {
       ? starsOverlay(picture, this.#depth, this.#camera, atmosphere, dimming)
       : picture
     this.#pipeline.outputNode = names.includes('rain')
-      ? precipitationOverlay(rtt(starry, null, null, { type: FloatType }), this.#camera, [
-          this.#rain
-        ])
+      ? precipitationOverlay(rtt(starry, null, null, exactly), this.#camera, [this.#rain])
       : starry
     this.#pipeline.needsUpdate = true
   }
