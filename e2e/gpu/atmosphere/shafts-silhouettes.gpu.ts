@@ -28,7 +28,7 @@ gpuTest(
       castInto: () => ({
         transmittance: () => () => float(1),
         diffuse: ({ view, offset }) =>
-          mix(under, vec4(1), view.localCoordinates(offset).altitude.div(DECK).clamp()) as Vec4
+          mix(under, vec4(1), view.localCoordinates(offset).altitude.div(DECK).clamp())
       })
     })
     shafts.enabled = false

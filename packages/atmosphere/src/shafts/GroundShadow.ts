@@ -66,11 +66,11 @@ const _scaling = new Matrix4()
 
 /** Plane of a flat world, in place of an ellipsoid: y is height. */
 const PLANE: Pick<Ellipsoid, 'footPoint' | 'heightAt' | 'eastNorthUpFrame'> = {
-  footPoint: ({ x, z }, target = new Vector3()) => target.set(x, 0, z),
+  footPoint: ({ x, z }, target) => (target ?? new Vector3()).set(x, 0, z),
   heightAt: ({ y }) => y,
   // East is x, and north −z.
-  eastNorthUpFrame: ({ x, z }, target = new Matrix4()) =>
-    target.set(1, 0, 0, x, 0, 0, 1, 0, 0, -1, 0, z, 0, 0, 0, 1)
+  eastNorthUpFrame: ({ x, z }, target) =>
+    (target ?? new Matrix4()).set(1, 0, 0, x, 0, 0, 1, 0, 0, -1, 0, z, 0, 0, 0, 1)
 }
 
 /**

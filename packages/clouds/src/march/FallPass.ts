@@ -19,14 +19,14 @@ export interface FallScene extends ShadingContext {
 }
 
 /**
- * Marched pixels of a frame from which on four of them share a ray in blocks up to 4 × 4: as many rays as a picture of 1920 × 1080 then has.
+ * Marched pixels of a frame from which on four of them share a ray in blocks up to 5 × 5: as many rays as a picture of 1920 × 1080 then has.
  * Fewer: tails of virga are lost in a grid in small pictures (*Virga*); more: they cost more than large ones.
  */
 export const sharing = { from: 33_000 }
 
 /** Marched pixels along an edge of those that share a ray: all have their own where all pixels are marched, or few, or few of each picture. */
 export const fallBlockOf = (block: number, pixels: number): number =>
-  block > 1 && block < 5 && pixels >= sharing.from ? 2 : 1
+  block > 1 && block < 6 && pixels >= sharing.from ? 2 : 1
 
 /**
  * Differences of log₂ ends between which a ray that ends nearer than the pixel's own loses its weight, and the weight that is left:
