@@ -158,9 +158,12 @@ export function predict(none: number, parts: readonly Part[], error: number): Ra
     if (parts.some(({ name }) => name === 'clouds')) range = [range[0], Infinity]
     else range = [range[0] + (has('medium') ? 0 : light), range[1] + light]
   }
-  // Ground that is as dark as what it hides hides light all the same.
-  if (has('ground') && of('ground').length === 0)
-    range = [Math.min(range[0], none), Math.max(range[1], none)]
+  // Ground that is as dark as what it hides hides light all the same, and haze is before it, which is not before the sky.
+  if (has('ground') && of('ground').length === 0) {
+    const hazes = (some: readonly Part[]): boolean => some.some(({ name }) => name === 'haze')
+    const isHazy = hazes(parts) && !hazes(changing)
+    range = [Math.min(range[0], none), isHazy ? Infinity : Math.max(range[1], none)]
+  }
   for (const { value } of of('drops', [...parts])) range = under(range, none, value)
   return [Math.max(range[0], 0), range[1]]
 }
