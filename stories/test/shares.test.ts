@@ -40,6 +40,7 @@ it('gives each post effect a share of its own, and leaves a pass that it does no
     'Welkin.CloudsFall': 'rain and snow under clouds',
     'Welkin.CloudsFallSpread': 'rain and snow under clouds',
     'Welkin.Precipitation.0': 'rain and snow around the camera',
+    'Welkin.LightningGlow': 'lightning',
     'Welkin.PrecipitationSkylight.0': 'light of rain and snow',
     Else: 'Else'
   }

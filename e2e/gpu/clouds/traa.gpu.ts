@@ -21,7 +21,7 @@ const TURNS = 12
 /** Frames of which the supersampled picture is the mean. */
 const SAMPLES = 16
 /** Part of a picture of 960×540 pixels and 60°, in which clouds are as large as there; frames in which they settle, and those of the exact picture. */
-const part = { width: 48, height: 27, field: 3, frames: 72, exactFrames: 24 } as const
+const part = { width: 48, height: 27, field: 3, frames: 128, exactFrames: 24 } as const
 
 /** Clouds over boxes, under TRAA or not. */
 class CloudyStage {

@@ -23,6 +23,7 @@ const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
   ['Welkin.PrecipitationSkylight', 'light of rain and snow'],
   ['Welkin.PrecipitationSunlight', 'light of rain and snow'],
   ['Welkin.Precipitation', 'rain and snow around the camera'],
+  ['Welkin.Lightning', 'lightning'],
   ['Welkin.', "air's tables"],
   ['Bloom', 'bloom'],
   ['Occlusion', 'ambient occlusion'],

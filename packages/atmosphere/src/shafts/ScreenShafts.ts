@@ -9,7 +9,6 @@ import type { Bool, Float, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { number } from '../uniforms'
 import type { ScreenShadows, ForegroundLayer } from '../view/AirShadows'
 import type { AtmosphereView } from '../view/AtmosphereView'
-import type { SkyLayer } from '../view/SkyLayer'
 import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
@@ -19,6 +18,7 @@ import { seenLight, type SeenForeground } from './tsl/seenLight'
 import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf } from './tsl/without'
 import { DepthRays } from '../view/DepthRays'
+import { SKY_DISTANCE, type SkyLayer } from '../view/SkyLayer'
 
 /** Transmittance below which a foreground layer hides what is behind it. Greater: shafts end at thin clouds (*Below a broken deck*). */
 const MIN_TRANSMITTANCE = 0.01
@@ -38,6 +38,9 @@ interface RayEnd extends Pick<ShaftRay, 'cosView' | 'distance'> {
   readonly offset: Vec3
   readonly inverse: Float
 }
+
+/** Optical path of rays that the planet's ground ends, over what it is without: near the horizon both are as long. Nearer to 1: light of the ground's air in the sky beside it. */
+const GROUND_PATH = 0.25
 
 const _size = new Vector2()
 
@@ -175,7 +178,7 @@ export class ScreenShafts implements ScreenShadows {
     const { foreground, grid } = this
     const { distance: to, cosView } = end
     const thinning = grid.thinningOn(cosView)
-    const path = grid.pathTo(to, thinning).toVar()
+    const path = this.#pathOf(end, thinning).toVar()
     if (foreground === undefined) return { path, thinning, tolerance: null }
     const passes = transmittance ?? foreground.transmittanceAt(at)
     const isSeen = passes.lessThan(CLEAR).toConst()
@@ -189,6 +192,13 @@ export class ScreenShafts implements ScreenShadows {
     const behind = passes.mul(isBehind).toConst()
     const front = { distance, before: passes.oneMinus().toConst(), behind }
     return { path, thinning, front, tolerance: isSeen.select(foreground.tolerance, 0).toConst() }
+  }
+
+  /** Optical path to the end of a ray. Ground of the planet before which nothing is drawn is told from the sky beside it. */
+  #pathOf({ distance, cosView }: Pick<RayEnd, 'distance' | 'cosView'>, thinning: Float): Float {
+    const { cosHorizon } = this.#shafts.view.viewpoint
+    const isGround = distance.equal(SKY_DISTANCE).and(cosView.lessThan(cosHorizon))
+    return this.grid.pathTo(distance, thinning).mul(isGround.select(GROUND_PATH, 1))
   }
 
   /** Light that the ray of a pixel of the grid loses. */
@@ -213,7 +223,7 @@ export class ScreenShafts implements ScreenShadows {
     }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
     const { all, seen: lit } = seenLight(distance, front, this.#lightOn(ray))
-    const whole = this.grid.pathTo(distance, thinning)
+    const whole = this.#pathOf(ray, thinning)
     return { lost: this.#color(lost), lit, all, whole, path, thinning }
   }
 
