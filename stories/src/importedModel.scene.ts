@@ -1,5 +1,5 @@
 import { exposureFor } from '@welkin/atmosphere'
-import { Mesh, PerspectiveCamera, PointLight, Scene } from 'three'
+import { Mesh, PerspectiveCamera, PointLight, Scene, SpotLight } from 'three'
 import type { MeshStandardMaterial } from 'three'
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js'
 import { Air } from './air'
@@ -34,10 +34,10 @@ export async function createImportedModel(
   // #shown const url = 'square.glb'
   const { scene: model } = await new GLTFLoader().loadAsync(url)
   scene.add(model)
-  const lamps = new Map<PointLight, number>() // of KHR_lights_punctual, and their candela
+  const lamps = new Map<PointLight | SpotLight, number>() // of KHR_lights_punctual, and candela
   model.traverse(part => {
     if (part instanceof Mesh) part.castShadow = part.receiveShadow = true
-    if (part instanceof PointLight) lamps.set(part, part.intensity)
+    if (part instanceof PointLight || part instanceof SpotLight) lamps.set(part, part.intensity)
   })
   // #endregion
   const meshes: Mesh[] = []

@@ -14,20 +14,20 @@ import type { Atmosphere } from '@welkin/atmosphere'
 import { cloudAirShadow, cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
 import { MathUtils, PerspectiveCamera, Scene } from 'three'
-import type { Object3D } from 'three'
+import type { Object3D, Vector3 } from 'three'
 import { shadow } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { Air } from './air'
 import { STILL_QUALITY } from './clouds/still'
 import { createCity } from './globe/city'
 import { createNoiseTexture } from './globe/detailNoise'
-import { Landscape } from './hills/Landscape'
+import { hillHeight, Landscape } from './hills/Landscape'
 import { meadow } from './hills/soil'
 import { Explorer } from './moving/Explorer'
 import { createRenderer, drawSettled, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { castLandShadow, LIGHT_DISTANCE } from './shafts/landShadow'
-import { Ridge } from './shafts/Ridge'
+import { Ridge, ridgeHeight } from './shafts/Ridge'
 import { shaftViews, type ShaftView } from './shafts/views'
 import { storyHandle } from './storyHandle'
 
@@ -68,6 +68,12 @@ function landOf(
   return city
 }
 
+/** Height of the ground below a place [m]: streets and seas are level. */
+const groundBelow =
+  ({ land }: ShaftView) =>
+  ({ x, z }: Vector3): number =>
+    land === 'ridge' ? ridgeHeight(x, z) : land === 'hills' ? hillHeight(x, z) : 0
+
 function cameraOf({ altitude, view, land }: ShaftView): PerspectiveCamera {
   const camera = new PerspectiveCamera(55, 1, 1, land === 'planet' ? 2e7 : 4e5)
   camera.position.y = altitude
@@ -86,7 +92,9 @@ export async function createLightShafts(
   const renderer = await createRenderer(canvas, args.forceWebGL, false, true)
   const scene = new Scene()
   const camera = cameraOf(view)
-  const explorer = args.frame ? undefined : new Explorer(camera, canvas)
+  const explorer = args.frame
+    ? undefined
+    : new Explorer(camera, canvas, { groundAt: groundBelow(view) })
   const elapsed = frameClock(args.frame)
   const current = { ...args }
   const air = new Air(renderer, scene, camera, 'post')

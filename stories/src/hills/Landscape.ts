@@ -71,7 +71,7 @@ function spacingAt(distance: number): number {
 const ROUND = 1.2
 
 /** Height of the hills: ridged noise of seven octaves that the grid can hold, nearly level within 1.5 km of the middle [m]. */
-function hillHeight(x: number, z: number): number {
+export function hillHeight(x: number, z: number): number {
   const spacing = spacingAt(Math.max(Math.abs(x), Math.abs(z)))
   let sum = 0
   for (let octave = 0; octave < 7; octave++) {

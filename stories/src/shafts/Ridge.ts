@@ -70,7 +70,7 @@ function heightAcross(across: number, along: number): number {
 }
 
 /** Height of the land [m]: a valley before a ridge, and ranges behind it. */
-const ridgeHeight = (x: number, z: number): number =>
+export const ridgeHeight = (x: number, z: number): number =>
   heightAcross(x * FORWARD[0] + z * FORWARD[1], z * FORWARD[0] - x * FORWARD[1])
 
 /** Place on the ground, across the ridge and along it, to the right as one looks across [m]. */
