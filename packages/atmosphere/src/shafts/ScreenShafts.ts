@@ -195,9 +195,9 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /** Optical path to the end of a ray. Ground of the planet before which nothing is drawn is told from the sky beside it. */
-  #pathOf({ distance, cosView }: Pick<RayEnd, 'distance' | 'cosView'>, thinning: Float): Float {
-    const { cosHorizon } = this.#shafts.view.viewpoint
-    const isGround = distance.equal(SKY_DISTANCE).and(cosView.lessThan(cosHorizon))
+  #pathOf({ distance }: Pick<RayEnd, 'distance'>, thinning: Float): Float {
+    // `distanceOf` has no other ray end there.
+    const isGround = distance.equal(SKY_DISTANCE) as Bool
     return this.grid.pathTo(distance, thinning).mul(isGround.select(GROUND_PATH, 1))
   }
 
