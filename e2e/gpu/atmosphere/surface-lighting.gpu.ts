@@ -72,8 +72,7 @@ gpuTest('depthNormal agrees with its float64 twin', async t => {
 gpuTest(
   'surfaceLighting lights unlit materials as a Lambert material is lit, shadows and lamps included',
   async t => {
-    const renderer = await t.createRenderer({ ...size, reversedDepthBuffer: true })
-    renderer.highPrecision = true
+    const renderer = await t.createPlanetRenderer(size)
     renderer.shadowMap.enabled = true
     const atmosphere = new Atmosphere({ frame: 'ecef', date: new Date('2026-06-21T15:30:00Z') })
     const scene = new Scene()

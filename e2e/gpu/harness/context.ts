@@ -30,6 +30,8 @@ export interface GpuContext {
   readonly backend: Backend
   /** An initialised renderer of this backend on a canvas in the page; 320×180, pixel ratio 1. */
   createRenderer: (options?: RendererOptions) => Promise<WebGPURenderer>
+  /** One that shows metres and a planet at once. */
+  createPlanetRenderer: (options?: RendererOptions) => Promise<WebGPURenderer>
   /** Renders to a float32 target (linear, before tone mapping) and reads it back. */
   render: (
     renderer: WebGPURenderer,
@@ -121,6 +123,11 @@ export function createContext(backend: Backend): ContextHandle {
     async createRenderer(options = {}) {
       const renderer = await createRenderer(backend, options)
       renderers.push(renderer)
+      return renderer
+    },
+    async createPlanetRenderer(options) {
+      const renderer = await context.createRenderer({ ...options, reversedDepthBuffer: true })
+      renderer.highPrecision = true
       return renderer
     },
     render: (renderer, scene, camera, options = {}) =>

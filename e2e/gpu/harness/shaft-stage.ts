@@ -14,11 +14,14 @@ import { Ellipsoid } from '@welkin/geo'
 import {
   BoxGeometry,
   FloatType,
+  Group,
+  type Matrix4,
   Mesh,
   MeshLambertMaterial,
   PerspectiveCamera,
   PlaneGeometry,
-  Scene
+  Scene,
+  type Camera
 } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
@@ -136,4 +139,38 @@ export function addBox(
 export function expectSame(a: Picture, b: Picture, label: string): void {
   const differs = a.data.findIndex((value, i) => value !== b.data[i])
   expectTrue(differs < 0, `${label}: ${a.data[differs]} is not ${b.data[differs]} at ${differs}`)
+}
+
+/** Towers on the sun's side of the camera, as they stand in a frame. */
+export function addTowers(set: Stage, frame: Matrix4): void {
+  const group = new Group()
+  for (const [x, width] of [
+    [-300, 200],
+    [50, 60],
+    [260, 150]
+  ])
+    group.add(addBox(set.scene, [x, 200, -600], [width, 500, 60]))
+  group.applyMatrix4(frame)
+  set.scene.add(group)
+}
+
+/** A camera's own pipeline of the stage's scene, with shafts. */
+export function secondCamera(
+  { scene, atmosphere, light }: Stage,
+  renderer: WebGPURenderer,
+  camera: Camera
+) {
+  const shafts = forwardShafts(atmosphere, camera, light)
+  const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
+  const pipeline = new RenderPipeline(renderer)
+  pipeline.outputColorTransform = false
+  const [color, depth] = [scenePass.getTextureNode(), scenePass.getTextureNode('depth')]
+  pipeline.outputNode = aerialPerspective(color, depth, camera, atmosphere, { shafts })
+  return {
+    shafts,
+    pipeline,
+    dispose: () => {
+      for (const owned of [scenePass, pipeline, shafts]) owned.dispose()
+    }
+  }
 }

@@ -11,8 +11,7 @@ gpuTest(
   'grass, flowers and trees stand on the ground of their frame',
   async t => {
     const size = { width: 96, height: 54 }
-    const renderer = await t.createRenderer({ ...size, reversedDepthBuffer: true })
-    renderer.highPrecision = true
+    const renderer = await t.createPlanetRenderer(size)
     const atmosphere = new Atmosphere()
     atmosphere.place(PLACE)
     atmosphere.setSunAngles(35, 200)

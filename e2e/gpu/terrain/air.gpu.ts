@@ -15,8 +15,7 @@ const PLACE = { longitude: 0.494, latitude: 46.35 }
 gpuTest(
   'air at the vertices of the ground is that at its pixels, within 1 %',
   async t => {
-    const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-    renderer.highPrecision = true
+    const renderer = await t.createPlanetRenderer(SIZE)
     const atmosphere = new Atmosphere()
     atmosphere.place(PLACE)
     const options = { resolution: 12, pageMemory: 20 }

@@ -36,8 +36,7 @@ const suns: Record<string, (atmosphere: Atmosphere) => Light> = {
 
 for (const [name, sunOf] of Object.entries(suns)) {
   gpuTest(`the ground receives the cascades of a ${name}`, async t => {
-    const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-    renderer.highPrecision = true
+    const renderer = await t.createPlanetRenderer(SIZE)
     renderer.shadowMap.enabled = true
     const atmosphere = new Atmosphere()
     atmosphere.place({ longitude: 12, latitude: 47 })

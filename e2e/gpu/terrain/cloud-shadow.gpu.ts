@@ -30,8 +30,7 @@ const plateau: HeightSource = {
 }
 
 gpuTest('the ground is as dark under clouds as these let light through', async t => {
-  const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(SIZE)
   renderer.shadowMap.enabled = true
   const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45 }).setSunAngles(50, 130)
   const camera = new PerspectiveCamera(90, 1, 1, 1e7)

@@ -34,8 +34,7 @@ async function draw(
   camera: PerspectiveCamera,
   source: HeightSource
 ): Promise<Picture> {
-  const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(SIZE)
   const terrain = new Terrain(atmosphere, source, {
     resolution: RESOLUTION,
     detail: DETAIL,

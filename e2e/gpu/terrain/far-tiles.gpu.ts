@@ -10,8 +10,7 @@ const PLACE = { longitude: 0.494, latitude: 46.35 }
 const HEIGHT = 150
 
 gpuTest('tiles far away look the same by materials of less code, at borders too', async t => {
-  const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(SIZE)
   const atmosphere = new Atmosphere({ frame: 'ecef' })
   const { ellipsoid } = atmosphere
   const terrain = new Terrain(atmosphere, new MountainHeights({ seed: 513 }), {

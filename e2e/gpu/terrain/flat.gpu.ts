@@ -32,8 +32,7 @@ const hills: HeightSource = {
 const SIZE = { width: 64, height: 48 }
 
 gpuTest('the ground of a flat world is drawn where the CPU finds it, without holes', async t => {
-  const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(SIZE)
   const atmosphere = new Atmosphere({ flat: true })
   const options = { resolution: 16, seaLevel: -Infinity, pageMemory: 20 }
   const terrain = new Terrain(atmosphere, hills, options)

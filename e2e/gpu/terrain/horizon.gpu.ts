@@ -12,8 +12,7 @@ const PLACE = { longitude: 12, latitude: 47 }
 const FRAMES = 20
 
 gpuTest('what ground hides is left out, and the picture stays', async t => {
-  const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(SIZE)
   const atmosphere = new Atmosphere()
   atmosphere.place(PLACE)
   const terrain = new Terrain(atmosphere, new WaveHeights(), {

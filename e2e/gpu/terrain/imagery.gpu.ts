@@ -18,8 +18,7 @@ const EAST = 200
 const WEST = 30
 
 gpuTest('pictures are drawn on the ground, a bad tile shows its parent', async t => {
-  const renderer = await t.createRenderer({ ...PICTURE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(PICTURE)
   const atmosphere = new Atmosphere({ frame: 'ecef' })
   let isOpen = false
   const open: (() => void)[] = []

@@ -16,8 +16,7 @@ async function stage(t: GpuContext): Promise<{
   camera: PerspectiveCamera
   make: () => Terrain
 }> {
-  const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(SIZE)
   const atmosphere = new Atmosphere({ frame: 'ecef' })
   const heights = new WaveHeights()
   const camera = new PerspectiveCamera(60, SIZE.width / SIZE.height, 1, 1e8)

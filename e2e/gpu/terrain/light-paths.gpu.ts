@@ -68,8 +68,7 @@ function setSun(atmosphere: Atmosphere, elevation: number): void {
 }
 
 gpuTest('haze before the ground is the same as fog and as a post effect, within 2 %', async t => {
-  const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(SIZE)
   const atmosphere = new Atmosphere({ frame: 'ecef' })
   setSun(atmosphere, 0.5)
   const heights = new WaveHeights()
@@ -114,8 +113,7 @@ gpuTest('haze before the ground is the same as fog and as a post effect, within 
 })
 
 gpuTest('the ground receives shadows of things', async t => {
-  const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(SIZE)
   renderer.shadowMap.enabled = true
   const atmosphere = new Atmosphere()
   atmosphere.place(PLACE)
@@ -180,8 +178,7 @@ function ridge(atmosphere: Atmosphere): HeightSource {
 }
 
 gpuTest('a ridge casts its shadow on the ground behind it', async t => {
-  const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(SIZE)
   renderer.shadowMap.enabled = true
   const atmosphere = new Atmosphere()
   atmosphere.place(PLACE)
@@ -220,8 +217,7 @@ gpuTest('a ridge casts its shadow on the ground behind it', async t => {
 })
 
 gpuTest('from orbit the sea is that of planetGround', async t => {
-  const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(SIZE)
   const atmosphere = new Atmosphere({ frame: 'ecef' })
   setSun(atmosphere, 0.6)
   const camera = cameraAt(atmosphere, 4e5, -1.1)

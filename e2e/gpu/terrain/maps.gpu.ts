@@ -53,8 +53,7 @@ const SIZE = { width: 32, height: 32 }
 
 /** Terrain seen from straight above, 1 km over a place, and how a node of its material is drawn. */
 async function fromAbove(t: GpuContext, options: TerrainOptions) {
-  const renderer: WebGPURenderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer: WebGPURenderer = await t.createPlanetRenderer(SIZE)
   const atmosphere = new Atmosphere({ frame: 'ecef' })
   const terrain = new Terrain(atmosphere, levelGround, {
     resolution: 8,

@@ -82,8 +82,7 @@ gpuTest(
 gpuTest(
   "falls on the terrain where a terrain's own mountains hide a low sun",
   async t => {
-    const renderer = await t.createRenderer({ ...size, reversedDepthBuffer: true })
-    renderer.highPrecision = true
+    const renderer = await t.createPlanetRenderer(size)
     const sun = 6
     const set = stage(renderer, sun)
     const terrain = onMountains(set)

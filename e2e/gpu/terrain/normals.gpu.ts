@@ -18,8 +18,7 @@ const PLACES = [
 const FOV = 15
 
 gpuTest('normals 2 m away are drawn as the CPU has them, within 0.5°', async t => {
-  const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(SIZE)
   const atmosphere = new Atmosphere({ frame: 'ecef' })
   const { ellipsoid } = atmosphere
   const terrain = new Terrain(atmosphere, new MountainHeights({ seed: 1 }), {

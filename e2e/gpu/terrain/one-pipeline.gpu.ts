@@ -7,8 +7,7 @@ gpuTest(
   'no shader is compiled as the camera goes from 2 m to 20,000 km',
   async t => {
     const size = { width: 48, height: 32 }
-    const renderer = await t.createRenderer({ ...size, reversedDepthBuffer: true })
-    renderer.highPrecision = true
+    const renderer = await t.createPlanetRenderer(size)
     const atmosphere = new Atmosphere({ frame: 'ecef' })
     const { ellipsoid } = atmosphere
     const terrain = new Terrain(atmosphere, new MountainHeights({ seed: 513 }), {

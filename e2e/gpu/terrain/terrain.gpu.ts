@@ -51,8 +51,7 @@ async function stage(
   options: TerrainOptions = {},
   source: HeightSource | PageSource = heights
 ): Promise<Stage> {
-  const renderer = await t.createRenderer({ ...size, reversedDepthBuffer: true })
-  renderer.highPrecision = true
+  const renderer = await t.createPlanetRenderer(size)
   const atmosphere = new Atmosphere({ frame: 'ecef' })
   const { ellipsoid } = atmosphere
   const terrain = new Terrain(atmosphere, source, {

@@ -70,8 +70,7 @@ function worstError(terrain: Terrain, camera: PerspectiveCamera, picture: Pictur
 gpuTest(
   'draws the ground where the CPU finds it, in kilometres with a moved origin, and on a small planet',
   async t => {
-    const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-    renderer.highPrecision = true
+    const renderer = await t.createPlanetRenderer(SIZE)
     const moved = new Atmosphere()
     moved.place(PLACE)
     moved.metersPerUnit = 1000
@@ -96,8 +95,7 @@ gpuTest(
 gpuTest(
   'draws measured ground where the CPU finds it, within 1 cm at 2 m',
   async t => {
-    const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-    renderer.highPrecision = true
+    const renderer = await t.createPlanetRenderer(SIZE)
     const atmosphere = new Atmosphere()
     atmosphere.place(PLACE)
     // Numbers 90 m apart that jump by up to 60 m.
@@ -129,8 +127,7 @@ gpuTest(
 gpuTest(
   'draws two cameras in a frame as each alone, and all of an orthographic view',
   async t => {
-    const renderer = await t.createRenderer({ ...SIZE, reversedDepthBuffer: true })
-    renderer.highPrecision = true
+    const renderer = await t.createPlanetRenderer(SIZE)
     const atmosphere = new Atmosphere()
     atmosphere.place(PLACE)
     const { terrain, scene } = groundOf(atmosphere)
