@@ -4,7 +4,14 @@ import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scatt
 import { QualityUniforms } from '../../../packages/clouds/src/march/quality'
 import { litClouds } from '../../../packages/clouds/src/march/tsl/shadePoints'
 import type { Float, Vec3 } from '../../../packages/clouds/src/tsl-types'
-import { castsOnce, measuredLoss, unseenClouds } from '../harness/cloud-shafts'
+import {
+  castsOnce,
+  lookAt,
+  marchedLoss,
+  measuredLoss,
+  radians as inRadians,
+  unseenClouds
+} from '../harness/cloud-shafts'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
@@ -158,3 +165,58 @@ for (const [label, storm, least] of [
     set.dispose()
   })
 }
+
+/** Sun after its setting [°], and tops of decks that are closed as far as the eye sees [m]. */
+const DUSK = -3
+const DECK_TOPS = [1600, 6000]
+
+/** True if light of the sun passes the deck on its way to a place on a ray to the north, where the sun has set. */
+function isBehindDeck(top: number, distance: number, view: number): boolean {
+  const { bottomRadius } = parameters()
+  const [up, north] = [Math.sin(inRadians(view)) * distance, Math.cos(inRadians(view)) * distance]
+  const [rise, run] = [Math.sin(inRadians(DUSK)), Math.cos(inRadians(DUSK))]
+  const radial = (bottomRadius + up) * rise + north * run
+  const radius = Math.hypot(bottomRadius + up, north)
+  // Light from below the horizon has passed its lowest place.
+  const lowest = radial < 0 ? Math.sqrt(radius ** 2 - radial ** 2) : radius
+  return lowest < bottomRadius + top
+}
+
+gpuTest('leaves the light that has passed over a closed deck, after sunset', async t => {
+  const renderer = await t.createRenderer(size)
+  for (const top of DECK_TOPS) {
+    const set = stage(renderer, DUSK, { quality: 'reference' })
+    const { shafts } = set
+    const layer = { ...fog, baseAltitude: top - 100, topAltitude: top, density: 0.5 }
+    const { node, draw, dispose } = await unseenClouds(
+      renderer,
+      set,
+      new CloudLayers([layer]),
+      new SparseNoise(),
+      () => float(0.5)
+    )
+    shafts.add(castsOnce(node))
+    for (const view of [8, 150]) {
+      lookAt(set, view)
+      for (let i = 0; i < 2; i++) await draw()
+      const darkAt = (distance: number): number => Number(isBehindDeck(top, distance, view))
+      const { whole, lost } = marchedLoss({ view, sun: DUSK }, Infinity, darkAt)
+      for (const quality of ['reference', 'medium'] as const) {
+        shafts.set({ quality })
+        const got = await measuredLoss(set)
+        const parts = (light: number[]): string =>
+          got.map((_, k) => (light[k] / whole[k]).toFixed(3)).join(' ')
+        t.note(`${top} m, ${view}°, ${quality}: lost ${parts(lost)}, got ${parts(got)}`)
+        for (let k = 0; k < 3; k++)
+          expectClose(
+            got[k],
+            lost[k],
+            { absolute: 0.015 * whole[k] },
+            `${view}°, ${quality}, #${k}`
+          )
+      }
+    }
+    dispose()
+    set.dispose()
+  }
+})

@@ -67,7 +67,8 @@ class CastShadow implements AirShadow, CloudCaster {
     const { field, shadows } = this.#clouds
     this.#isMapped.value = shadows.source === this.#shafts.source ? 1 : 0
     viewpointMapped(view, this.#shift.value).sub(shadows.camera)
-    if (field.worldMap === null && this.isCast) this.#diffuse.update(renderer)
+    // Other occluders may cast where these clouds do not: their shaders read the table, too.
+    if (field.worldMap === null && !this.#clouds.isDisposed) this.#diffuse.update(renderer)
   }
 
   makeRoom(): SharedRows {
@@ -92,18 +93,22 @@ class CastShadow implements AirShadow, CloudCaster {
     const { view, direction, jitter, receiver } = ray
     if (receiver === this.#clouds) return () => float(1)
     const mapped = sampleShadowsAlong(shadows.nodes, this.#shift, direction, jitter)
+    // After sunset light has passed its lowest place, with what clouds are there, far beyond the maps.
+    const isFar = view.viewpoint.cosLight.lessThan(0).toConst()
     return ({ offset, distance }) => {
       const { shadow, inMap } = mapped(distance)
-      const depth = shadow.toVar()
-      If(inMap.mul(this.#isMapped).equal(0), () => {
+      const depth = shadow.mul(this.#isMapped).toVar()
+      If(inMap.mul(this.#isMapped).equal(0).or(isFar), () => {
         const { altitude, cosLight, up } = view.localCoordinates(offset)
-        if (field.worldMap === null) depth.assign(meanDepthTowards(field, altitude, cosLight))
+        let mean: Float
+        if (field.worldMap === null) mean = meanDepthTowards(field, altitude, cosLight)
         else {
           const shifted = offset.add(this.#shift).toConst() as Vec3
           const seen = shifted.length().toConst() as Float
           const sample = { offset: shifted, altitude, up, distance: seen }
-          depth.assign(opticalDepthTowards(field, sample, view.lightDirection))
+          mean = opticalDepthTowards(field, sample, view.lightDirection)
         }
+        depth.assign(depth.max(mean))
       })
       // What is scattered within the forward peak arrives with the sun.
       return depth.mul(light.nodes.depthScale).negate().exp()

@@ -6,6 +6,7 @@ import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
 import { lightTransmittance } from '../../transmittance/tsl/transmittance'
 import { loop, type Float, type Vec2, type Vec4 } from '../../tsl-types'
 import { SKY_DISTANCE } from '../../view/SkyLayer'
+import type { Viewpoint } from '../../view/tsl/viewpoint'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 import { litRay, type LitPoint } from './litRay'
 import { lostDiffuse } from './lostDiffuse'
@@ -110,19 +111,25 @@ export function lostLight(
         lost.addAssign(lostInGroup(march, stretch, perGroup.mul(float(group)).add(stretch.from)))
       })
     }
+    const partAt = (from: Float): Float =>
+      steps.partAt(from.sub(limits.start).clamp(0, length)).toConst()
+    const first = partAt(distanceToLight(viewpoint, cosView, cosViewLight))
+    const lit = first.oneMinus().toConst() as Float
     if (isMappedOnly) {
-      const all = { from: float(0), width: float(1), groups, samples, isMapped: true }
-      marchStretch('group', all)
+      marchStretch('group', { from: first, width: lit, groups, samples, isMapped: true })
       return
     }
-    const near = steps.partAt(mapped.sub(limits.start).clamp(0, length)).toConst() as Float
+    const near = partAt(mapped).max(first).toConst() as Float
     // Each has groups by its light, and as many samples whatever that is; beyond the map shadows are soft.
     const part = (from: Float, width: Float, most: Float, isMapped: boolean): Stretch => {
-      const some = groups.mul(width).ceil().toConst() as Float
+      const some = groups
+        .mul(width.div(lit.max(1e-6)))
+        .ceil()
+        .toConst() as Float
       const each = groups.mul(most).div(some.max(1)).ceil().toConst() as Float
       return { from, width, groups: some, samples: each, isMapped }
     }
-    marchStretch('near', part(float(0), near, samples, true))
+    marchStretch('near', part(first, near.sub(first).toConst(), samples, true))
     marchStretch('far', part(near, near.oneMinus().toConst(), samples.sub(1), false))
     if (missingAt === null) return
     const places = int(groups.mul(DIFFUSE_PART).max(LEAST_DIFFUSE))
@@ -137,6 +144,21 @@ export function lostLight(
     lost.addAssign(lostDiffuse(air, diffuse))
   })
   return lost
+}
+
+/** Distance from the camera at which a ray leaves the planet's shadow; 0 where it begins in the light [m]. */
+function distanceToLight(
+  { radius, toHorizon, cosLight }: Viewpoint,
+  cosView: Float,
+  cosViewLight: Float
+): Float {
+  const below = radius.mul(cosLight).toConst() as Float
+  // Squares of the planet's radius and of the distance from the axis of its shadow, and half the growth of that.
+  const depth = below.mul(below).sub(toHorizon).toConst() as Float
+  const outward = radius.mul(cosView.sub(cosLight.mul(cosViewLight))).toConst() as Float
+  const root = outward.mul(outward).add(cosViewLight.mul(cosViewLight).oneMinus().mul(depth))
+  const leaves = depth.div(outward.add(root.max(0).sqrt()).max(1e-3))
+  return cosLight.lessThan(0).and(depth.greaterThan(0)).select(leaves, 0).toConst()
 }
 
 /** Light scattered once that a ray gains at a distance in the air, for unit irradiance [1/(m sr)]. */
