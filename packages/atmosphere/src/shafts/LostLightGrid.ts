@@ -57,8 +57,9 @@ const LEAST_THINNING = 1e-9
 /** Height over which the thinning of the air is found [m]. */
 export const THIN_HEIGHT = 1000
 
-/** Least optical path of what is seen [–]. */
-const MIN_PATH = 1e-7
+/** Greatest 1/τ² of what is seen, and the least of what is seen through a foreground [–]. */
+export const MOST_RARITY = 1e14
+const LEAST_RARITY = 1e-6
 
 /** Greatest light that is mixed [octaves]. */
 const MAX_MIXED = Math.log2(MAX_KEPT) - 4
@@ -80,8 +81,12 @@ function partsOf({ lost, lit }: LostLight): Vec3 {
   return taken.div(whole).clamp(-MAX_KEPT, 1)
 }
 
-/** Part of the light of clear air without end that comes from an optical path: as if 1/(1 + τ) were left of it beyond. */
-const shownOf = (path: Float): Float => path.div(path.add(1)).toConst()
+/** Part of the light of clear air without end that comes from an optical path τ: much as 1 − exp(−τ) is τ/√(1 + τ²), by 1/τ². */
+const shownOf = (rarity: Float): Float => rarity.add(1).inverseSqrt().toConst()
+
+/** 1/τ² by log₂ τ, and the other way round. */
+const rarityAt = (depth: Float): Float => depth.mul(-2).exp2().toConst()
+const depthOf = (rarity: Float): Float => log2(rarity).mul(-0.5).toConst()
 
 /** First or last in each direction, of four by their number. */
 function cornerOf(index: Int): Vec2 {
@@ -91,15 +96,15 @@ function cornerOf(index: Int): Vec2 {
 
 /** Air of a ray, as far as a picture shows it. */
 export interface SeenAir {
-  /** Optical path in clear air that gives as much light as is seen: see {@link LostLightGrid.pathTo} [–]. */
-  readonly path: Float
-  /** See {@link LostLightGrid.thinningOn}. */
-  readonly thinning: Float
+  /** 1/τ², where τ is the optical path in clear air that gives as much light as is seen: see {@link LostLightGrid.rarityTo} [–]. */
+  readonly rarity: Float
+  /** That of the ray without end. */
+  readonly least: Float
 }
 
 /** Light of a ray. */
 export interface LostLight extends SeenAir {
-  /** Path to what was drawn, whatever is before it. */
+  /** 1/τ² up to what was drawn, whatever is before it. */
   readonly whole: Float
   /** Light that it loses, linear sRGB of about that for unit irradiance. */
   readonly lost: Vec3
@@ -119,7 +124,7 @@ export interface LostLight extends SeenAir {
  * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
  *
  * A depth is log₂ of the optical path of clear air, which thins out with height, that has as much light as is seen: clouds hide some of it.
- * It is a measure, no more: a pixel finds it with two square roots, two quotients and a logarithm less than of an exponential profile.
+ * It is a measure, no more: a pixel finds 1/τ², which needs no root and no quotient.
  */
 export class LostLightGrid {
   /** Lost light with log₂ of the light that there is; its part of that with log₂ of the depth. */
@@ -138,9 +143,9 @@ export class LostLightGrid {
   readonly #offset = vector2()
   /** Reciprocal of the pixels of the picture from one that is marched to the next. */
   readonly #density = number(1)
-  /** Extinction of the air at the camera, the least of all colours [1/m]. Greater: dark pixels along the horizon (*Ridge at sunrise*). */
-  readonly #extinction = number(1)
-  /** Part by which the air thins out with each metre of height, and the least with each metre of a ray [1/m]. */
+  /** Reciprocal of the extinction of the air at the camera, the least of all colours [m]. Less: dark pixels along the horizon (*Ridge at sunrise*). */
+  readonly #freePath = number(1)
+  /** Part by which the air thins out with each metre of height, and the least with each metre of a ray, over its extinction [–]. */
   readonly #thinning = number(1)
   readonly #grazing = number(1)
   #passes: readonly FragmentPass[] = []
@@ -177,10 +182,10 @@ export class LostLightGrid {
   setAir(air: number, above: number, fog: number, radius: number): void {
     const whole = Math.max(air, LEAST_EXTINCTION) + fog
     const thinning = Math.max((air - above) / whole / THIN_HEIGHT, LEAST_THINNING)
-    this.#extinction.value = whole
-    this.#thinning.value = thinning
+    this.#freePath.value = 1 / whole
+    this.#thinning.value = thinning / whole
     // Half of the air on a level ray, π r/(2k) under a root.
-    this.#grazing.value = Math.sqrt((2 * thinning) / (Math.PI * radius))
+    this.#grazing.value = Math.sqrt((2 * thinning) / (Math.PI * radius)) / whole
   }
 
   /**
@@ -197,11 +202,11 @@ export class LostLightGrid {
         const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
         const found = march(at, pixel)
         const { lost, all, whole } = found
-        const path = found.path.max(MIN_PATH).toConst() as Float
-        const scale = float(LIGHT_SCALE).div(shownOf(path)).toConst()
+        const rarity = found.rarity.min(MOST_RARITY).toConst() as Float
+        const scale = float(LIGHT_SCALE).div(shownOf(rarity)).toConst()
         const light = log2(luminance(all).max(MIN_LIGHT).mul(LIGHT_SCALE).div(shownOf(whole)))
         lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), light))
-        partsOut.assign(vec4(partsOf(found), log2(path)))
+        partsOut.assign(vec4(partsOf(found), depthOf(rarity)))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -243,35 +248,37 @@ export class LostLightGrid {
     return result
   }
 
-  /** Part by which the air on a ray thins out with each metre [1/m]; `cosView` is the cosine of its angle from the zenith. */
-  thinningOn(cosView: Float): Float {
-    return cosView.mul(this.#thinning).max(this.#grazing).toConst()
-  }
-
-  /** Optical path of clear air up to a distance [m], which thins out: d/√(1 + (kd)²), much as 1 − exp(−kd) over k. */
-  pathTo(distance: Float, thinning: Float): Float {
-    const thinned = distance.mul(thinning).toConst() as Float
-    const even = thinned.mul(thinned).add(1).inverseSqrt().mul(distance)
-    return even.mul(this.#extinction).toConst()
-  }
-
-  /** Distance up to which the air has an optical path [m]. */
-  #distanceAt(path: Float, thinning: Float): Float {
-    const even = path.div(this.#extinction).toConst() as Float
-    const thinned = even.mul(thinning).toConst() as Float
-    return even.mul(thinned.mul(thinned).oneMinus().max(LEAST_LEFT).inverseSqrt())
+  /** 1/τ² of a ray without end; `cosView` is the cosine of its angle from the zenith. */
+  leastRarity(cosView: Float): Float {
+    const thinning = cosView.mul(this.#thinning).max(this.#grazing).toConst() as Float
+    return thinning.mul(thinning).toConst()
   }
 
   /**
-   * Path of a foreground, through which a part passes of what is behind: each has its part of the light that is seen.
+   * 1/τ² of air that thins out, up to a distance d: of τ = σ d/√(1 + (kd)²), much as σ (1 − exp(−kd))/k.
    *
-   * @param front - Path up to the foreground.
-   * @param behind - Path up to what is behind it; 0 where that is not seen.
+   * @param nearness - 1/d, 0 for the sky [1/m].
    */
-  pathThrough(front: Float, behind: Float, transmittance: Float): Float {
-    const before = behind.add(1).mul(transmittance.oneMinus()).toConst() as Float
-    const after = front.add(1).mul(transmittance).toConst() as Float
-    return front.mul(before).add(behind.mul(after)).div(before.add(after))
+  rarityTo(nearness: Float, least: Float): Float {
+    const rare = nearness.mul(this.#freePath).toConst() as Float
+    return rare.mul(rare).add(least).toConst()
+  }
+
+  /** Distance up to which the air has a depth [m]. */
+  #distanceAt(depth: Float, least: Float): Float {
+    const rarity = rarityAt(depth)
+    return rarity.sub(least).max(rarity.mul(LEAST_LEFT)).inverseSqrt().mul(this.#freePath)
+  }
+
+  /**
+   * 1/τ² of a foreground, through which a part passes of what is behind: each has its part of the light that is seen.
+   *
+   * @param front - 1/τ² up to the foreground.
+   * @param behind - That up to what is behind it; the greatest where that is not seen.
+   */
+  rarityThrough(front: Float, behind: Float, transmittance: Float): Float {
+    const shown = mix(shownOf(front), shownOf(behind), transmittance).toConst()
+    return shown.mul(shown).reciprocal().sub(1).max(LEAST_RARITY)
   }
 
   /**
@@ -280,28 +287,25 @@ export class LostLightGrid {
    * @param at - Its place in the picture.
    * @param seen - Its air.
    * @param tolerance - Octaves by which its depth may be off: it is as near to those around as that allows. Null is none.
-   * @param lit - Light of its air that is seen, given a factor on the distance of what is seen, and the distance up to which
+   * @param lit - Light of its air that is seen, given octaves by which what is seen is farther away, and the distance up to which
    *   light is asked for [m]. Called in a branch.
    */
   read(
     at: Vec2,
-    { path, thinning }: SeenAir,
+    { rarity, least }: SeenAir,
     tolerance: Float | null,
     lit: (nearer: Float, most: Float) => Vec3
   ): Vec3 {
     const middle = at.mul(this.#scale).add(this.#offset).toConst()
     const mean = sampleLevel0(this.#texels, middle).toConst()
-    const own = log2(path.max(MIN_PATH)).toConst() as Float
-    const part = shownOf(path).toVar()
-    const shownAt = (depth: Float): Float => shownOf(depth.exp2().toConst())
+    const seen = rarity.min(MOST_RARITY).toConst() as Float
+    const own = depthOf(seen)
     const moved = (depth: Float): Float =>
       tolerance ? depth.sub(own).clamp(tolerance.negate(), tolerance).toConst() : float(0)
-    if (tolerance) {
-      If(tolerance.greaterThan(0), () => {
-        // The tangent: it moves little.
-        part.addAssign(part.mul(part.oneMinus()).mul(moved(mean.w).mul(Math.LN2)))
-      })
-    }
+    const known = shownOf(seen)
+    // The tangent: it moves little.
+    const slope = known.mul(known).oneMinus().mul(Math.LN2)
+    const part = tolerance ? known.mul(slope.mul(moved(mean.w)).add(1)) : known
     const lost = mean.rgb.mul(part.div(LIGHT_SCALE)).toVar() as Vec3
     const isLit = mean.w.sub(LIT_DEPTH).abs().lessThan(NEAR_MEAN)
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN).and(isLit.not()), () => {
@@ -315,7 +319,6 @@ export class LostLightGrid {
       // Steps of a depth show where the nearest to it counts for more than others.
       const similar = (tolerance ?? float(0)).mul(2).max(SIMILAR).toConst()
       const even = similar.mul(similar).toConst()
-      const known = shownAt(own)
       // Light, and depth.
       const sums = vec4(0).toVar()
       const weights = float(0).toVar()
@@ -323,7 +326,7 @@ export class LostLightGrid {
         const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
         const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
         const other = sampleLevel0(this.#texels, at).toConst()
-        const light = log2(shownAt(other.w).div(known))
+        const light = log2(shownOf(rarityAt(other.w)).div(known))
         const apart = other.w.sub(own).abs().min(DISTINCT).max(light.abs()).toConst()
         const near = apart.mul(apart).add(even).reciprocal().toConst()
         // Else what is beside clouds, whose depths are rough, has a part of those that are far from its own.
@@ -333,9 +336,9 @@ export class LostLightGrid {
       })
       sums.divAssign(weights)
       const farther = sums.w.sub(own).add(2 * SAME_DEPTH)
-      const limit = this.#distanceAt(sums.w.add(farther.max(0)).exp2(), thinning)
+      const limit = this.#distanceAt(sums.w.add(farther.max(0)), least)
       const most = farther.lessThan(SAME_DEPTH).select(limit, FAR) as Float
-      lost.assign(lit(moved(sums.w).exp2(), most).mul(sums.rgb))
+      lost.assign(lit(moved(sums.w), most).mul(sums.rgb))
     })
     return lost
   }

@@ -13,7 +13,13 @@ import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
-import { LostLightGrid, THIN_HEIGHT, type LostLight, type SeenAir } from './LostLightGrid'
+import {
+  LostLightGrid,
+  MOST_RARITY,
+  THIN_HEIGHT,
+  type LostLight,
+  type SeenAir
+} from './LostLightGrid'
 import { seenLight, type SeenForeground } from './tsl/seenLight'
 import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf } from './tsl/without'
@@ -23,12 +29,16 @@ import { SKY_DISTANCE, type SkyLayer } from '../view/SkyLayer'
 /** Transmittance below which a foreground layer hides what is behind it. Greater: shafts end at thin clouds (*Below a broken deck*). */
 const MIN_TRANSMITTANCE = 0.01
 
+/** log₂ of a distance that is beyond all. */
+const FAR_OCTAVES = 40
+
 /** Transmittance from which on a foreground is not seen. */
 const CLEAR = 0.99
 
 /** Air and foreground of a pixel, and octaves by which its distance may be off. */
 interface Seen extends SeenAir {
-  readonly front?: SeenForeground
+  /** Foreground, given octaves by which it is farther. */
+  readonly front?: (farther?: Float) => SeenForeground
   readonly tolerance: Float | null
 }
 
@@ -37,10 +47,12 @@ interface RayEnd extends Pick<ShaftRay, 'cosView' | 'distance'> {
   /** Displacement in the mapped space of what gives the ray's direction [m], and the reciprocal of its length. */
   readonly offset: Vec3
   readonly inverse: Float
+  /** Reciprocal of the distance; 0 for the sky [1/m]. */
+  readonly nearness: Float
 }
 
-/** Optical path of rays that the planet's ground ends, over what it is without: near the horizon both are as long. Nearer to 1: light of the ground's air in the sky beside it. */
-const GROUND_PATH = 0.25
+/** 1/τ² of rays that the planet's ground ends, over what it is without: near the horizon both are as long. Nearer to 1: light of the ground's air in the sky beside it. */
+const GROUND_RARITY = 16
 
 const _size = new Vector2()
 
@@ -140,11 +152,9 @@ export class ScreenShafts implements ScreenShadows {
     const at = this.#place
     const seen = this.#seenAt(at, end, true, transmittance)
     const { front, tolerance } = seen
-    const lost = this.grid.read(at, seen, tolerance, (nearer, most) => {
-      const ray = this.#rayTo(end)
-      front?.distance.assign(front.distance.mul(nearer).min(most))
-      const to = ray.distance.min(most).toConst()
-      return seenLight(to, front, this.#lightOn(ray), 1 - CLEAR).seen
+    const lost = this.grid.read(at, seen, tolerance, (farther, most) => {
+      const ray = this.#rayTo({ ...end, distance: end.distance.min(most).toConst() })
+      return seenLight(ray.distance, front?.(farther), this.#lightOn(ray), 1 - CLEAR).seen
     })
     return lost.mul(this.#gain.mul(this.#strength))
   }
@@ -171,42 +181,47 @@ export class ScreenShafts implements ScreenShadows {
   /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. */
   #seenAt(
     at: Vec2,
-    end: Pick<RayEnd, 'distance' | 'cosView'>,
+    end: RayEnd,
     isRough: boolean,
     transmittance?: Float
   ): Seen {
     const { foreground, grid } = this
-    const { distance: to, cosView } = end
-    const thinning = grid.thinningOn(cosView)
-    const path = this.#pathOf(end, thinning).toVar()
-    if (foreground === undefined) return { path, thinning, tolerance: null }
+    const least = grid.leastRarity(end.cosView)
+    const whole = this.#rarityOf(end, least)
+    if (foreground === undefined) return { rarity: whole, least, tolerance: null }
     const passes = transmittance ?? foreground.transmittanceAt(at)
     const isSeen = passes.lessThan(CLEAR).toConst()
-    const distance = to.toVar()
-    const isBehind = this.#isForward.oneMinus().toConst()
-    path.mulAssign(isBehind)
+    const octaves = float(FAR_OCTAVES).toVar()
+    const isForward = this.#isForward
+    const rarity = whole.add(isForward.mul(MOST_RARITY)).toVar()
     If(isSeen, () => {
-      distance.assign(to.min(foreground.distanceAt(at, isRough)))
-      path.assign(grid.pathThrough(grid.pathTo(distance, thinning), path, passes))
+      octaves.assign(foreground.octavesAt(at, isRough))
+      const nearness = octaves.negate().exp2().max(end.nearness)
+      rarity.assign(grid.rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
     })
-    const behind = passes.mul(isBehind).toConst()
-    const front = { distance, before: passes.oneMinus().toConst(), behind }
-    return { path, thinning, front, tolerance: isSeen.select(foreground.tolerance, 0).toConst() }
+    const front = (farther?: Float): SeenForeground => ({
+      distance: (farther ? octaves.add(farther) : octaves).exp2().min(end.distance).toConst(),
+      before: passes.oneMinus().toConst(),
+      behind: passes.mul(isForward.oneMinus()).toConst()
+    })
+    return { rarity, least, front, tolerance: isSeen.select(foreground.tolerance, 0).toConst() }
   }
 
-  /** Optical path to the end of a ray. Ground of the planet before which nothing is drawn is told from the sky beside it. */
-  #pathOf({ distance }: Pick<RayEnd, 'distance'>, thinning: Float): Float {
+  /** 1/τ² up to the end of a ray. Ground of the planet before which nothing is drawn is told from the sky beside it. */
+  #rarityOf({ distance, nearness }: RayEnd, least: Float): Float {
     // `distanceOf` has no other ray end there.
     const isGround = distance.equal(SKY_DISTANCE) as Bool
-    return this.grid.pathTo(distance, thinning).mul(isGround.select(GROUND_PATH, 1))
+    return this.grid.rarityTo(nearness, least).mul(isGround.select(GROUND_RARITY, 1))
   }
 
   /** Light that the ray of a pixel of the grid loses. */
   #march(renderer: Renderer, at: Vec2, pixel: Vec2): LostLight {
     const { view, shadowedAir, steps } = this.#shafts
-    const ray = this.#rayTo(this.#endIn(renderer, at))
+    const end = this.#endIn(renderer, at)
+    const ray = this.#rayTo(end)
     const { distance } = ray
-    const { front, path, thinning } = this.#seenAt(at, ray, false)
+    const { front: frontOf, rarity, least } = this.#seenAt(at, end, false)
+    const front = frontOf?.()
     const { isOrthographicCamera } = this.#shafts.camera as OrthographicCamera
     const start = isOrthographicCamera
       ? view.toMapped(vec3(this.#rays.position(renderer, at, float(0.5)).xy, 0))
@@ -223,8 +238,8 @@ export class ScreenShafts implements ScreenShadows {
     }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
     const { all, seen: lit } = seenLight(distance, front, this.#lightOn(ray))
-    const whole = this.#pathOf(ray, thinning)
-    return { lost: this.#color(lost), lit, all, whole, path, thinning }
+    const whole = this.#rarityOf(end, least)
+    return { lost: this.#color(lost), lit, all, whole, rarity, least }
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
@@ -243,10 +258,11 @@ export class ScreenShafts implements ScreenShadows {
     const cosView = offset.dot(view.up).mul(inverse).toConst() as Float
     const beyond = distanceOf({ hitsGround: cosView.lessThan(view.viewpoint.cosHorizon) })
     const distance = isSky.select(beyond, square.mul(inverse)).toConst() as Float
-    return { offset, inverse, cosView, distance }
+    const nearness = isSky.select(0, inverse).toConst() as Float
+    return { offset, inverse, nearness, cosView, distance }
   }
 
-  #rayTo({ offset, inverse, cosView, distance }: RayEnd): ShaftRay {
+  #rayTo({ offset, inverse, cosView, distance }: Omit<RayEnd, 'nearness'>): ShaftRay {
     const direction = offset.mul(inverse).toConst() as Vec3
     const cosViewLight = direction.dot(this.#shafts.view.lightDirection).toConst() as Float
     return { direction, cosView: cosView.clamp(-1, 1).toConst(), cosViewLight, distance }

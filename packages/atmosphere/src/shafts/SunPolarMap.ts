@@ -1,4 +1,4 @@
-import { MathUtils, Matrix3, Matrix4, RGFormat, RepeatWrapping, Vector3 } from 'three'
+import { MathUtils, Matrix3, Matrix4, NearestFilter, RedFormat, RepeatWrapping, Vector3 } from 'three'
 import type { RenderTarget, DepthTexture } from 'three'
 import { texture } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
@@ -51,9 +51,9 @@ export class SunPolarMap {
   #pass: FragmentPass | null = null
 
   constructor() {
-    this.target = tableTarget('Welkin.LightShafts', 1, 1)
+    this.target = tableTarget('Welkin.LightShafts', 1, 1, 1, NearestFilter)
     const [map] = this.target.textures
-    map.format = RGFormat
+    map.format = RedFormat
     map.wrapT = RepeatWrapping
     this.map = texture(map)
   }

@@ -1,6 +1,18 @@
-import { atan, mix, vec2 } from 'three/tsl'
+import { atan, step, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import { loadTexel, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
+import {
+  gatherRed,
+  loadTexel,
+  mixed,
+  type Float,
+  type Vec2,
+  type Vec3,
+  type Vec4
+} from '../../tsl-types'
+
+/** Greatest cotangent of an angle that the map keeps, and the least of a view ray, which is greater than that of no occluder: half floats hold a little more. */
+export const MOST_COTANGENT = 6e4
+const LEAST_SEEN = -5e4
 
 /** Factor on noise for numbers that are not alike: 4√5. */
 const NOISE_STRIDE = 8.944
@@ -29,10 +41,8 @@ export interface PolarFrame {
 export interface PolarRay {
   /** sin θ, which turns a distance along the ray into ρ. */
   sinViewLight: Float
-  /** θ, or π − θ where the ray goes away from the light: half floats are finest near nought [rad]. */
-  angle: Float
-  /** True if the ray goes towards the light. */
-  isTowards: Bool
+  /** cot θ: occluders of a greater one are nearer to the light. */
+  cotangent: Float
   /** The two rows whose middles φ is between, and its place between them. */
   rows: readonly [Float, Float]
   betweenRows: Float
@@ -56,8 +66,7 @@ export function polarRay(
   const first = place.floor().toConst() as Float
   return {
     sinViewLight,
-    angle: atan(sinViewLight, cosViewLight.abs()).toConst(),
-    isTowards: cosViewLight.greaterThan(0).toConst(),
+    cotangent: cosViewLight.div(sinViewLight).max(LEAST_SEEN).toConst() as Float,
     rows: [first.mod(rows).toConst(), first.add(1).mod(rows).toConst()],
     betweenRows: place.sub(first).toConst()
   }
@@ -90,24 +99,20 @@ export function columnAt(frame: PolarFrame, distance: Float): Float {
  * the light, between the four nearest rays. Each is compared: angles must not be mixed, or a shadow before the sky would be
  * displaced by up to a texel, the more the farther from the light one looks.
  *
- * @param map - θ of the first occluder, and π − θ, of rays of light [rad].
+ * @param map - cot θ of the first occluder of rays of light.
  * @param distance - Distance from the camera [m].
  */
 export function darkPart(
   map: TextureNode,
   frame: PolarFrame,
-  ray: PolarRay,
+  { sinViewLight, cotangent, rows, betweenRows }: PolarRay,
   distance: Float
 ): Float {
-  const { sinViewLight, rows, betweenRows } = ray
   const column = columnAt(frame, distance.mul(sinViewLight)).toConst() as Float
   const first = column.floor().toConst() as Float
-  const columns = [first, first.add(1).min(frame.columns.sub(1)).toConst() as Float]
-  const dark = columns.map(x => {
-    const [here, next] = rows.map(y => isDark(map, ray, x, y))
-    return mix(here, next, betweenRows)
-  })
-  return mix(dark[0], dark[1], column.sub(first)).toConst()
+  const corner = vec2(first, rows[0]).add(1).div(vec2(frame.columns, frame.rows))
+  const four = step(cotangent, gatherRed(map, corner))
+  return mixed(four.toConst() as Vec4, vec2(column.sub(first), betweenRows).toConst())
 }
 
 /**
@@ -126,12 +131,6 @@ export function ditheredDark(
   // Noise of columns is apart from that of rows.
   const x = column.add(noise.mul(NOISE_STRIDE).fract()).floor().min(frame.columns.sub(1))
   const y = ray.betweenRows.greaterThan(noise).select(ray.rows[1], ray.rows[0])
-  return isDark(map, ray, x.toConst(), y.toConst()).toConst()
-}
-
-/** 1 if a view ray's place is dark by a ray of light, else 0. */
-function isDark(map: TextureNode, ray: PolarRay, x: Float, y: Float): Float {
-  const { angle, isTowards } = ray
-  const { x: occluder, y: behind } = loadTexel(map, vec2(x, y)).toConst()
-  return isTowards.select(angle.greaterThan(occluder), angle.lessThan(behind)).select(1, 0)
+  // Not a step: loops about it have a variable of that name.
+  return loadTexel(map, vec2(x, y)).r.greaterThanEqual(ray.cotangent).select(1, 0).toConst()
 }
