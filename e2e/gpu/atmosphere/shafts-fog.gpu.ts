@@ -109,7 +109,7 @@ gpuTest(
   async t => {
     const renderer = await t.createRenderer(size)
     const [elevation, distance] = [25, 8000]
-    const set = stage(renderer, elevation, { quality: 'reference' }, true)
+    const set = stage(renderer, elevation, { quality: 'medium' }, true)
     const { scene, camera, shafts, atmosphere } = set
     shafts.add({ castInto: () => ({ transmittance: () => () => float(0) }) })
     addBox(scene, [0, 0, -distance - 50], [9000, 4000, 100]).material.color.set(0)

@@ -53,7 +53,7 @@ export function lostInSlice(
     const mediaTo = (distance: Float): readonly ShadowedMedium[] =>
       shadowedAir.mediaOn({ ...shaftRay, view, distance })
     const media = mediaTo(to)
-    const past = dimmedBy(media)
+    const past = dimmedBy(media, far => far)
     const sums = vec4(0).toVar()
     loop('sliceSample', int(samples), index => {
       const part = float(index).add(jitter).div(samples).toConst()
@@ -67,7 +67,9 @@ export function lostInSlice(
       const distance = from.add(length.mul(centre)).toConst() as Float
       const once = scatteredOnce(air, airAt, cosViewLight)(distance.sub(limits.start))
       const part = sum.div(samples).toConst()
-      lost.assign(past(once, distance).mul(length.mul(part)))
+      const darkLength = length.mul(part).toConst() as Float
+      const light = past(once, distance.sub(darkLength.mul(0.5)), darkLength)
+      lost.assign(light.mul(darkLength))
       // Of fog what the slice adds to the light before it.
       const before = media.length > 0 ? mediaTo(from) : []
       const fog = media.reduce<Vec4>((light, { singleScattered: added, transmittance }, i) => {
@@ -93,7 +95,7 @@ export function lostInSlice(
       cosViewLight,
       samples: int(1),
       jitter: float(0.5),
-      missingAt: () => past(missing, middle)
+      missingAt: () => past(missing, from, length as Float)
     }
     lost.addAssign(lostDiffuse(air, diffuse))
     const before = media.length > 0 ? mediaTo(from) : []
