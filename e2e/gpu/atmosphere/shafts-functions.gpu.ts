@@ -88,11 +88,7 @@ gpuTest('has a view ray in the row of the rays of light that it crosses', async 
     const polar = polarRay(frame, direction, direction.dot(vector(light)))
     const column = columnAt(frame, distance)
     const crossing = polar.sinViewLight.mul(point.length()).div(distance)
-    // The place among rows, of which two are read.
-    const row = polar.rows[0]
-      .add(polar.betweenRows)
-      .add(0.5)
-      .div(4 * columns)
+    const row = polar.row.add(0.5).div(4 * columns)
     return vec4(column, row.fract(), polar.cotangent, crossing)
   })
   texels.forEach(([u, v, z], i) => {
@@ -153,7 +149,7 @@ gpuTest(
       places.map(([x, y]) => [x, y, 100, 0]),
       ({ x, y, z }) =>
         vec4(
-          grid.read(vec2(x, y), airTo(z), null, () => vec3(2)),
+          grid.read(grid.meanAt(vec2(x, y)), airTo(z), null, () => vec3(2)),
           0
         )
     )

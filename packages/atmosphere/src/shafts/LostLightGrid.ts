@@ -6,6 +6,7 @@ import { RADIANCE_SCALE } from '../tables/tableSizes'
 import {
   loop,
   sampleLevel0,
+  type Bool,
   type Float,
   type Int,
   type Vec2,
@@ -40,6 +41,9 @@ const DISTINCT = 0.25
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
+
+/** Part of the light of clear air that a foreground leaves at most, to be told from none. Greater: thin clouds have the light of the air behind them. */
+const MOST_SHOWN = 0.8
 
 /** Greatest number that the targets keep: half floats hold a little more. */
 const MAX_KEPT = 6e4
@@ -85,8 +89,21 @@ function partsOf({ lost, lit }: LostLight): Vec3 {
 const shownOf = (rarity: Float): Float => rarity.add(1).inverseSqrt().toConst()
 
 /** 1/τ² by log₂ τ, and the other way round. */
-const rarityAt = (depth: Float): Float => depth.mul(-2).exp2().toConst()
+export const rarityAt = (depth: Float): Float => depth.mul(-2).exp2().toConst()
 const depthOf = (rarity: Float): Float => log2(rarity).mul(-0.5).toConst()
+
+/**
+ * True if pixels around have a foreground before clear air that accounts for a pixel's own: as much light is seen as passes it
+ * from behind, or more, and less than without it.
+ *
+ * @param behind - 1/τ² up to what is behind the foreground.
+ */
+export function hasForeground({ mean }: Mean, behind: Float, transmittance: Float): Bool {
+  const [around, clear] = [rarityAt(mean.w), behind].map(shownOf)
+  const isNearer = around.lessThan(clear.mul(MOST_SHOWN))
+  // Those that are marked show all.
+  return isNearer.and(around.greaterThan(clear.mul(transmittance))) as Bool
+}
 
 /** First or last in each direction, of four by their number. */
 function cornerOf(index: Int): Vec2 {
@@ -100,6 +117,12 @@ export interface SeenAir {
   readonly rarity: Float
   /** That of the ray without end. */
   readonly least: Float
+}
+
+/** Mean of pixels of the grid: light that is lost, and depth; and its place among the texels. */
+export interface Mean {
+  readonly mean: Vec4
+  readonly place: Vec2
 }
 
 /** Light of a ray. */
@@ -281,23 +304,27 @@ export class LostLightGrid {
     return shown.mul(shown).reciprocal().sub(1).max(LEAST_RARITY)
   }
 
+  /** Mean of the grid's pixels around a place in the picture, to be read once for it. */
+  meanAt(at: Vec2): Mean {
+    const place = at.mul(this.#scale).add(this.#offset).toConst() as Vec2
+    return { place, mean: sampleLevel0(this.#texels, place).toConst() }
+  }
+
   /**
    * Light that a pixel loses, as {@link LostLight} has it.
    *
-   * @param at - Its place in the picture.
+   * @param around - Mean around it.
    * @param seen - Its air.
    * @param tolerance - Octaves by which its depth may be off: it is as near to those around as that allows. Null is none.
    * @param lit - Light of its air that is seen, given octaves by which what is seen is farther away, and the distance up to which
    *   light is asked for [m]. Called in a branch.
    */
   read(
-    at: Vec2,
+    { place: middle, mean }: Mean,
     { rarity, least }: SeenAir,
     tolerance: Float | null,
     lit: (nearer: Float, most: Float) => Vec3
   ): Vec3 {
-    const middle = at.mul(this.#scale).add(this.#offset).toConst()
-    const mean = sampleLevel0(this.#texels, middle).toConst()
     const seen = rarity.min(MOST_RARITY).toConst() as Float
     const own = depthOf(seen)
     const moved = (depth: Float): Float =>

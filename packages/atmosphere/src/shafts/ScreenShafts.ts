@@ -15,9 +15,12 @@ import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
 import {
   LostLightGrid,
+  hasForeground,
   MOST_RARITY,
+  rarityAt,
   THIN_HEIGHT,
   type LostLight,
+  type Mean,
   type SeenAir
 } from './LostLightGrid'
 import { seenLight, type SeenForeground } from './tsl/seenLight'
@@ -150,9 +153,10 @@ export class ScreenShafts implements ScreenShadows {
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
     const at = this.#place
-    const seen = this.#seenAt(at, end, true, transmittance)
+    const around = this.grid.meanAt(at)
+    const seen = this.#seenAt(at, end, around, transmittance)
     const { front, tolerance } = seen
-    const lost = this.grid.read(at, seen, tolerance, (farther, most) => {
+    const lost = this.grid.read(around, seen, tolerance, (farther, most) => {
       const ray = this.#rayTo({ ...end, distance: end.distance.min(most).toConst() })
       return seenLight(ray.distance, front?.(farther), this.#lightOn(ray), 1 - CLEAR).seen
     })
@@ -178,11 +182,11 @@ export class ScreenShafts implements ScreenShadows {
     return left
   }
 
-  /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. */
+  /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. With the mean `around` it, roughly. */
   #seenAt(
     at: Vec2,
     end: RayEnd,
-    isRough: boolean,
+    around?: Mean,
     transmittance?: Float
   ): Seen {
     const { foreground, grid } = this
@@ -195,9 +199,18 @@ export class ScreenShafts implements ScreenShadows {
     const isForward = this.#isForward
     const rarity = whole.add(isForward.mul(MOST_RARITY)).toVar()
     If(isSeen, () => {
-      octaves.assign(foreground.octavesAt(at, isRough))
-      const nearness = octaves.negate().exp2().max(end.nearness)
-      rarity.assign(grid.rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
+      const look = (): void => {
+        octaves.assign(foreground.octavesAt(at, around !== undefined))
+        const nearness = octaves.negate().exp2().max(end.nearness)
+        rarity.assign(grid.rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
+      }
+      if (around === undefined) look()
+      else {
+        // A pixel in the midst of clouds need not be looked at.
+        If(hasForeground(around, rarity, passes), () => {
+          rarity.assign(rarityAt(around.mean.w))
+        }).Else(look)
+      }
     })
     const front = (farther?: Float): SeenForeground => ({
       distance: (farther ? octaves.add(farther) : octaves).exp2().min(end.distance).toConst(),
@@ -220,7 +233,7 @@ export class ScreenShafts implements ScreenShadows {
     const end = this.#endIn(renderer, at)
     const ray = this.#rayTo(end)
     const { distance } = ray
-    const { front: frontOf, rarity, least } = this.#seenAt(at, end, false)
+    const { front: frontOf, rarity, least } = this.#seenAt(at, end)
     const front = frontOf?.()
     const { isOrthographicCamera } = this.#shafts.camera as OrthographicCamera
     const start = isOrthographicCamera

@@ -10,6 +10,10 @@ import {
   type Vec4
 } from '../../tsl-types'
 
+/** Columns and rows over which {@link ditheredDark} is spread, about as far: shadows of hills on clouds far away have edges in steps where it is one (*Fog from above*). */
+const SPREAD_COLUMNS = 1.5
+const SPREAD_ROWS = 6
+
 /** Greatest cotangent of an angle that the map keeps, and the least of a view ray, which is greater than that of no occluder: half floats hold a little more. */
 export const MOST_COTANGENT = 6e4
 const LEAST_SEEN = -5e4
@@ -43,9 +47,8 @@ export interface PolarRay {
   sinViewLight: Float
   /** cot θ: occluders of a greater one are nearer to the light. */
   cotangent: Float
-  /** The two rows whose middles φ is between, and its place between them. */
-  rows: readonly [Float, Float]
-  betweenRows: Float
+  /** Place of φ among rows, of which there are more beyond the last: whole numbers are middles of rows. */
+  row: Float
 }
 
 /**
@@ -62,13 +65,10 @@ export function polarRay(
   // Not √(1 − ν²), which cancels near the source.
   const sinViewLight = x.mul(x).add(y.mul(y)).sqrt().max(1e-7).toConst() as Float
   const turns = atan(y, x).mul(1 / (2 * Math.PI))
-  const place = turns.add(1).mul(rows).sub(0.5).toConst() as Float
-  const first = place.floor().toConst() as Float
   return {
     sinViewLight,
     cotangent: cosViewLight.div(sinViewLight).max(LEAST_SEEN).toConst() as Float,
-    rows: [first.mod(rows).toConst(), first.add(1).mod(rows).toConst()],
-    betweenRows: place.sub(first).toConst()
+    row: turns.add(1).mul(rows).sub(0.5).toConst() as Float
   }
 }
 
@@ -105,18 +105,18 @@ export function columnAt(frame: PolarFrame, distance: Float): Float {
 export function darkPart(
   map: TextureNode,
   frame: PolarFrame,
-  { sinViewLight, cotangent, rows, betweenRows }: PolarRay,
+  { sinViewLight, cotangent, row }: PolarRay,
   distance: Float
 ): Float {
-  const column = columnAt(frame, distance.mul(sinViewLight)).toConst() as Float
-  const first = column.floor().toConst() as Float
-  const corner = vec2(first, rows[0]).add(1).div(vec2(frame.columns, frame.rows))
-  const four = step(cotangent, gatherRed(map, corner))
-  return mixed(four.toConst() as Vec4, vec2(column.sub(first), betweenRows).toConst())
+  const place = vec2(columnAt(frame, distance.mul(sinViewLight)), row).toConst()
+  const first = place.floor().toConst()
+  const corner = first.add(1).div(vec2(frame.columns, frame.rows)) as Vec2
+  const four = step(cotangent, gatherRed(map, corner)).toConst() as Vec4
+  return mixed(four, place.sub(first).toConst())
 }
 
 /**
- * As {@link darkPart} in the mean, from one of the four rays: for what is read often, or has a history.
+ * As {@link darkPart} in the mean of a little more, from one of the rays of light about: for what is read often, or has a history.
  *
  * @param noise - In [0, 1).
  */
@@ -129,8 +129,9 @@ export function ditheredDark(
 ): Float {
   const column = columnAt(frame, distance.mul(ray.sinViewLight))
   // Noise of columns is apart from that of rows.
-  const x = column.add(noise.mul(NOISE_STRIDE).fract()).floor().min(frame.columns.sub(1))
-  const y = ray.betweenRows.greaterThan(noise).select(ray.rows[1], ray.rows[0])
+  const aside = noise.mul(NOISE_STRIDE).fract().sub(0.5)
+  const x = column.add(aside.mul(SPREAD_COLUMNS)).round().clamp(0, frame.columns.sub(1))
+  const y = ray.row.add(noise.sub(0.5).mul(SPREAD_ROWS)).round().mod(frame.rows)
   // Not a step: loops about it have a variable of that name.
   return loadTexel(map, vec2(x, y)).r.greaterThanEqual(ray.cotangent).select(1, 0).toConst()
 }
