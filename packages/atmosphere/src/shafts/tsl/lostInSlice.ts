@@ -68,7 +68,9 @@ export function lostInSlice(
       const once = scatteredOnce(air, airAt, cosViewLight)(distance.sub(limits.start))
       const part = sum.div(samples).toConst()
       const darkLength = length.mul(part).toConst() as Float
-      const light = past(once, distance.sub(darkLength.mul(0.5)), darkLength)
+      // The dark part as one stretch: that of the steps, not of the places in them.
+      const half = sum.sub(1).mul(0.5).add(jitter).mul(length).div(samples)
+      const light = past(once, distance.sub(half), darkLength)
       lost.assign(light.mul(darkLength))
       // Of fog what the slice adds to the light before it.
       const before = media.length > 0 ? mediaTo(from) : []
@@ -80,8 +82,8 @@ export function lostInSlice(
       // As long as an even stretch of the same variance.
       const variance = sums.z.div(sum).sub(centre.mul(centre))
       const width = samples.mul(samples).mul(12).reciprocal()
-      const half = variance.add(width).max(0).mul(3).sqrt().toConst()
-      const edges = vec2(centre.sub(half).max(0), centre.add(half).min(1))
+      const aside = variance.add(width).max(0).mul(3).sqrt().toConst()
+      const edges = vec2(centre.sub(aside).max(0), centre.add(aside).min(1))
       dark.assign(edges.mul(length).add(from))
     })
     if (missingAt === null) return

@@ -181,9 +181,10 @@ function lostInGroup(
   If(dark.greaterThan(0), () => {
     const centre = sum.div(dark).toConst() as Float
     const inAir = steps.distance(centre).toConst() as Float
-    // The dark part as one stretch.
+    // The dark part as one stretch: that of the steps, not of the places in them.
     const darkWidth = dark.mul(perSample).toConst() as Float
-    const light = past(scatteredAt(inAir), centre.sub(darkWidth.mul(0.5)), darkWidth)
+    const from = centre.sub(dark.sub(1).mul(0.5).add(jitter).mul(perSample))
+    const light = past(scatteredAt(inAir), from, darkWidth)
     lost.assign(light.mul(steps.slope(centre).mul(darkWidth)))
   })
   return lost
