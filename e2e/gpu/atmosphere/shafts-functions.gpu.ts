@@ -64,7 +64,7 @@ gpuTest('spaces samples as the float64 twin does', async t => {
 gpuTest('has a view ray in the row of the rays of light that it crosses', async t => {
   const columns = 512
   const [even, greatest] = [30, 30_000]
-  const logScale = 1 / Math.log1p(greatest / even)
+  const logScale = (columns - 1) / Math.log2(1 + greatest / even)
   const light = new Vector3(0.3, 0.5, -0.6).normalize()
   const across = new Vector3(0, 1, 0).cross(light).normalize()
   const along = light.clone().cross(across)
@@ -72,11 +72,11 @@ gpuTest('has a view ray in the row of the rays of light that it crosses', async 
   const frame: PolarFrame = {
     across: vector(across),
     along: vector(along),
-    evenDistance: float(even),
+    perMeter: float(1 / even),
     logScale: float(logScale),
     logOffset: float(0),
-    columns: float(columns),
-    rows: float(4 * columns)
+    size: vec2(columns, 4 * columns),
+    texelSize: vec2(1 / columns, 1 / (4 * columns))
   }
   const next = random(5)
   const texels = Array.from({ length: 32 }, () => [next(), next(), 1e4 * (2 * next() - 1)])
@@ -93,8 +93,8 @@ gpuTest('has a view ray in the row of the rays of light that it crosses', async 
   })
   texels.forEach(([u, v, z], i) => {
     const [column, row, cotangent, crossing] = results.subarray(4 * i, 4 * i + 4)
-    const position = Math.max((u * columns - 0.5) / (columns - 1), 0)
-    const distance = Math.max(even * Math.expm1(position / logScale), 1e-3 * even)
+    const position = Math.max(u * columns - 0.5, 0)
+    const distance = Math.max(even * (2 ** (position / logScale) - 1), 1e-3 * even)
     const turn = (row - v + 1.5) % 1
     expectClose((column + 0.5) / columns, u, { absolute: 2e-5 }, 'column')
     // Near the line to the light float32 has few directions.

@@ -236,7 +236,6 @@ export class LightShafts implements ShadowedShafts {
     const view = atmosphere.viewOf(camera, source)
     const isLit = this.#enabled && this.#setStrength > 0 && view?.isLit && source.lightsAir
     const quality = qualities[this.#quality]
-    const { groups, samples, inFog } = quality
     if (isLit && frame && drawShadow(this.light, frame, camera)) {
       // Nodes of one render share the map.
       const render = `${frame.frameId} ${frame.renderId}`
@@ -247,9 +246,7 @@ export class LightShafts implements ShadowedShafts {
     this.map.update(renderer, view!, atmosphere.space, maps, quality)
     this.#isActive = maps.length > 0
     if (isLit) this.#updateShadows(view, renderer)
-    steps.groups.value = groups
-    steps.samples.value = samples
-    steps.inFog.value = inFog
+    for (const name of ['groups', 'samples', 'inFog'] as const) steps[name].value = quality[name]
     return true
   }
 

@@ -61,8 +61,7 @@ const LEAST_THINNING = 1e-9
 /** Height over which the thinning of the air is found [m]. */
 export const THIN_HEIGHT = 1000
 
-/** Greatest 1/τ² of what is seen, and the least of what is seen through a foreground [–]. */
-export const MOST_RARITY = 1e14
+/** Least 1/τ² of what is seen through a foreground [–]. */
 const LEAST_RARITY = 1e-6
 
 /** Greatest light that is mixed [octaves]. */
@@ -225,11 +224,10 @@ export class LostLightGrid {
         const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
         const found = march(at, pixel)
         const { lost, all, whole } = found
-        const rarity = found.rarity.min(MOST_RARITY).toConst() as Float
-        const scale = float(LIGHT_SCALE).div(shownOf(rarity)).toConst()
+        const scale = float(LIGHT_SCALE).div(shownOf(found.rarity)).toConst()
         const light = log2(luminance(all).max(MIN_LIGHT).mul(LIGHT_SCALE).div(shownOf(whole)))
         lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), light))
-        partsOut.assign(vec4(partsOf(found), depthOf(rarity)))
+        partsOut.assign(vec4(partsOf(found), depthOf(found.rarity)))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -325,11 +323,10 @@ export class LostLightGrid {
     tolerance: Float | null,
     lit: (nearer: Float, most: Float) => Vec3
   ): Vec3 {
-    const seen = rarity.min(MOST_RARITY).toConst() as Float
-    const own = depthOf(seen)
+    const own = depthOf(rarity)
     const moved = (depth: Float): Float =>
       tolerance ? depth.sub(own).clamp(tolerance.negate(), tolerance).toConst() : float(0)
-    const known = shownOf(seen)
+    const known = shownOf(rarity)
     // The tangent: it moves little.
     const slope = known.mul(known).oneMinus().mul(Math.LN2)
     const part = tolerance ? known.mul(slope.mul(moved(mean.w)).add(1)) : known

@@ -16,7 +16,6 @@ import { spacingIn } from './quality'
 import {
   LostLightGrid,
   hasForeground,
-  MOST_RARITY,
   rarityAt,
   THIN_HEIGHT,
   type LostLight,
@@ -31,6 +30,9 @@ import { SKY_DISTANCE, type SkyLayer } from '../view/SkyLayer'
 
 /** Transmittance below which a foreground layer hides what is behind it. Greater: shafts end at thin clouds (*Below a broken deck*). */
 const MIN_TRANSMITTANCE = 0.01
+
+/** 1/τ² of what is not seen. */
+const UNSEEN_RARITY = 1e14
 
 /** log₂ of a distance that is beyond all. */
 const FAR_OCTAVES = 40
@@ -197,7 +199,7 @@ export class ScreenShafts implements ScreenShadows {
     const isSeen = passes.lessThan(CLEAR).toConst()
     const octaves = float(FAR_OCTAVES).toVar()
     const isForward = this.#isForward
-    const rarity = whole.add(isForward.mul(MOST_RARITY)).toVar()
+    const rarity = whole.add(isForward.mul(UNSEEN_RARITY)).toVar()
     If(isSeen, () => {
       const look = (): void => {
         octaves.assign(foreground.octavesAt(at, around !== undefined))

@@ -31,14 +31,14 @@ export interface PolarFrame {
   readonly across: Vec3
   /** Direction of φ = π/2. */
   readonly along: Vec3
-  /** Distance ρ₀ up to which columns are even; beyond, they grow with ρ [m]. */
-  readonly evenDistance: Float
-  /** Factor and summand that turn ln(1 + ρ/ρ₀) into a position among columns, in [0, 1] from first to last. */
+  /** Reciprocal of the distance ρ₀ up to which columns are even; beyond, they grow with ρ [1/m]. */
+  readonly perMeter: Float
+  /** Factor and summand that turn log₂(1 + ρ/ρ₀) into a place among columns. */
   readonly logScale: Float
   readonly logOffset: Float
-  /** Number of columns, and of rows. */
-  readonly columns: Float
-  readonly rows: Float
+  /** Number of columns, and of rows; and their reciprocals. */
+  readonly size: Vec2
+  readonly texelSize: Vec2
 }
 
 /** A view ray in a {@link PolarFrame}. */
@@ -56,7 +56,7 @@ export interface PolarRay {
  * @param cosViewLight - ν, direction against the source.
  */
 export function polarRay(
-  { across, along, rows }: PolarFrame,
+  { across, along, size }: PolarFrame,
   direction: Vec3,
   cosViewLight: Float
 ): PolarRay {
@@ -68,16 +68,15 @@ export function polarRay(
   return {
     sinViewLight,
     cotangent: cosViewLight.div(sinViewLight).max(LEAST_SEEN).toConst() as Float,
-    row: turns.add(1).mul(rows).sub(0.5).toConst() as Float
+    row: turns.add(1).mul(size.y).sub(0.5).toConst() as Float
   }
 }
 
 /** A texel's ray of light: the displacement from the camera of its point nearest to the camera, and ρ [m]. */
 export function lightRayAt(frame: PolarFrame, uv: Vec2): { offset: Vec3; distance: Float } {
-  const { across, along, evenDistance, logScale, logOffset, columns } = frame
-  const position = uv.x.mul(columns).sub(0.5).div(columns.sub(1))
-  const grown = position.sub(logOffset).div(logScale).exp().sub(1)
-  const distance = grown.max(1e-3).mul(evenDistance).toConst() as Float
+  const { across, along, perMeter, logScale, logOffset, size } = frame
+  const grown = uv.x.mul(size.x).sub(0.5).sub(logOffset).div(logScale).exp2().sub(1)
+  const distance = grown.max(1e-3).div(perMeter).toConst() as Float
   const azimuth = uv.y.mul(2 * Math.PI).toConst()
   const offset = across.mul(azimuth.cos()).add(along.mul(azimuth.sin())).mul(distance)
   return { offset: offset.toConst(), distance }
@@ -89,9 +88,9 @@ export function lightRayAt(frame: PolarFrame, uv: Vec2): { offset: Vec3; distanc
  * @param distance - ρ ≥ 0 [m].
  */
 export function columnAt(frame: PolarFrame, distance: Float): Float {
-  const { evenDistance, logScale, logOffset, columns } = frame
-  const position = distance.div(evenDistance).add(1).log().mul(logScale).add(logOffset).clamp()
-  return position.mul(columns.sub(1))
+  const { perMeter, logScale, logOffset, size } = frame
+  const place = distance.mul(perMeter).add(1).log2().mul(logScale).add(logOffset)
+  return place.clamp(0, size.x.sub(1))
 }
 
 /**
@@ -110,9 +109,8 @@ export function darkPart(
 ): Float {
   const place = vec2(columnAt(frame, distance.mul(sinViewLight)), row).toConst()
   const first = place.floor().toConst()
-  const corner = first.add(1).div(vec2(frame.columns, frame.rows)) as Vec2
-  const four = step(cotangent, gatherRed(map, corner)).toConst() as Vec4
-  return mixed(four, place.sub(first).toConst())
+  const four = step(cotangent, gatherRed(map, first.add(1).mul(frame.texelSize))).toConst()
+  return mixed(four as Vec4, place.sub(first).toConst())
 }
 
 /**
@@ -130,8 +128,8 @@ export function ditheredDark(
   const column = columnAt(frame, distance.mul(ray.sinViewLight))
   // Noise of columns is apart from that of rows.
   const aside = noise.mul(NOISE_STRIDE).fract().sub(0.5)
-  const x = column.add(aside.mul(SPREAD_COLUMNS)).round().clamp(0, frame.columns.sub(1))
-  const y = ray.row.add(noise.sub(0.5).mul(SPREAD_ROWS)).round().mod(frame.rows)
+  const x = column.add(aside.mul(SPREAD_COLUMNS)).round().clamp(0, frame.size.x.sub(1))
+  const y = ray.row.add(noise.sub(0.5).mul(SPREAD_ROWS)).round().mod(frame.size.y)
   // Not a step: loops about it have a variable of that name.
   return loadTexel(map, vec2(x, y)).r.greaterThanEqual(ray.cotangent).select(1, 0).toConst()
 }
