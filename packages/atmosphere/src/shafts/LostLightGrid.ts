@@ -73,8 +73,8 @@ const MIN_LIGHT = 1e-12
 /** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
 const PALE = 0.2
 
-/** Summand of places in the grid, whose rounding must not put whole ones into the cell before [pixels]. */
-const ROUNDING = 1e-3
+/** Summand of places in the grid: rounding must not put whole ones into the cell before, and none is in the middle between pixels, where marks of two alone would count [pixels]. Less: lines a pixel wide where the spacing is even. */
+const ASIDE = 0.02
 
 /** Parts of the light that are lost, by colours. */
 function partsOf({ lost, lit }: LostLight): Vec3 {
@@ -192,7 +192,7 @@ export class LostLightGrid {
     this.target.setSize(2 * x + 2, y + 1)
     const texelSize = this.#texelSize.value.set(1 / (2 * x + 2), 1 / (y + 1))
     this.#scale.value.copy(this.#size.value).divideScalar(spacing).multiply(texelSize)
-    this.#offset.value.setScalar(1 - 0.5 / spacing).multiply(texelSize)
+    this.#offset.value.setScalar(1 + ASIDE - 0.5 / spacing).multiply(texelSize)
   }
 
   /**
@@ -334,10 +334,7 @@ export class LostLightGrid {
     const isLit = mean.w.sub(LIT_DEPTH).abs().lessThan(NEAR_MEAN)
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN).and(isLit.not()), () => {
       const size = this.#gridSize
-      const place = middle
-        .div(this.#texelSize)
-        .sub(1 - ROUNDING)
-        .toConst() as Vec2
+      const place = middle.div(this.#texelSize).sub(1).toConst() as Vec2
       const isSteep = mean.w.lessThan(STEEP_LIMIT)
       const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
       // Steps of a depth show where the nearest to it counts for more than others.
