@@ -1,5 +1,5 @@
-import type { RenderTarget } from 'three'
-import { Fn, If, float, log2, luminance, mix, step, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import { RedFormat, type RenderTarget } from 'three'
+import { Fn, If, float, log2, luminance, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
@@ -14,7 +14,6 @@ import {
   type Vec4
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
-import { FAR } from './tsl/without'
 
 /** Octaves of depth by which pixels may differ and still share light. Smaller: the march's pixels show on slopes (*Towers in haze*). */
 const SAME_DEPTH = 0.35
@@ -51,7 +50,7 @@ const MAX_KEPT = 6e4
 /** Scale of light in the targets. */
 const LIGHT_SCALE = RADIANCE_SCALE / 8
 
-/** Least of 1 − x², where x is the part of a ray's air up to a depth: the sky is no farther. Smaller: half floats have noise there. */
+/** Least part of 1/τ² that is left without that of the ray without end: the sky is no farther. Smaller: half floats have noise there. */
 const LEAST_LEFT = 0.01
 
 /** Least extinction of the air, and the least part by which it thins out with each metre of height [1/m]. */
@@ -70,19 +69,8 @@ const MAX_MIXED = Math.log2(MAX_KEPT) - 4
 /** Least light that other light is compared with [1/sr]. */
 const MIN_LIGHT = 1e-12
 
-/** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
-const PALE = 0.2
-
 /** Summand of places in the grid: rounding must not put whole ones into the cell before, and none is in the middle between pixels, where marks of two alone would count [pixels]. Less: lines a pixel wide where the spacing is even. */
 const ASIDE = 0.02
-
-/** Parts of the light that are lost, by colours. */
-function partsOf({ lost, lit }: LostLight): Vec3 {
-  const all = luminance(lit).max(MIN_LIGHT).toConst()
-  const isBright = vec3(step(all.mul(PALE), lit)).toConst()
-  const [taken, whole] = [mix(vec3(luminance(lost)), lost, isBright), mix(vec3(all), lit, isBright)]
-  return taken.div(whole).clamp(-MAX_KEPT, 1)
-}
 
 /** Part of the light of clear air without end that comes from an optical path τ: much as 1 − exp(−τ) is τ/√(1 + τ²), by 1/τ². */
 const shownOf = (rarity: Float): Float => rarity.add(1).inverseSqrt().toConst()
@@ -110,6 +98,12 @@ function cornerOf(index: Int): Vec2 {
   return vec2(float(index).sub(row.mul(2)), row)
 }
 
+/** Mean of pixels of the grid: light that is lost, and depth; and its place among the texels. */
+export interface Mean {
+  readonly mean: Vec4
+  readonly place: Vec2
+}
+
 /** Air of a ray, as far as a picture shows it. */
 export interface SeenAir {
   /** 1/τ², where τ is the optical path in clear air that gives as much light as is seen: see {@link LostLightGrid.rarityTo} [–]. */
@@ -118,20 +112,13 @@ export interface SeenAir {
   readonly least: Float
 }
 
-/** Mean of pixels of the grid: light that is lost, and depth; and its place among the texels. */
-export interface Mean {
-  readonly mean: Vec4
-  readonly place: Vec2
-}
-
-/** Light of a ray. */
+/** Light of a ray, linear sRGB of about that for unit irradiance. */
 export interface LostLight extends SeenAir {
   /** 1/τ² up to what was drawn, whatever is before it. */
   readonly whole: Float
-  /** Light that it loses, linear sRGB of about that for unit irradiance. */
+  /** Light that it loses. */
   readonly lost: Vec3
-  /** Light of its air that is seen if nothing cast shadows, likewise; and all of it, up to what was drawn. */
-  readonly lit: Vec3
+  /** Light of its air up to what was drawn, if nothing cast shadows. */
   readonly all: Vec3
 }
 
@@ -140,20 +127,21 @@ export interface LostLight extends SeenAir {
  * depth: from nine, of which any four that touch have samples in all places of their steps.
  *
  * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
- * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of
- * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and of four beside
+ * grid, with their depth if they may be mixed, which most pixels read once; and the pixels of the grid. Other pixels take from
+ * nine of them where light is steep, as about the sun, and from four beside
  * silhouettes and edges of clouds. Those that are alike in light and depth count most. One that is farther than all loses light up to their depth:
- * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
+ * they know nothing of the air beyond. Light is kept for as much air as there is without end, of which a pixel sees its part; where none around is at its depth,
+ * it loses of its own light the part that they lose.
  *
  * A depth is log₂ of the optical path of clear air, which thins out with height, that has as much light as is seen: clouds hide some of it.
  * It is a measure, no more: a pixel finds 1/τ², which needs no root and no quotient.
  */
 export class LostLightGrid {
-  /** Lost light with log₂ of the light that there is; its part of that with log₂ of the depth. */
+  /** Lost light with log₂ of the depth; log₂ of the light that there is. */
   readonly #marched: RenderTarget
   readonly target: RenderTarget
   readonly #lost: TextureNode
-  readonly #parts: TextureNode
+  readonly #light: TextureNode
   readonly #texels: TextureNode
   /** Size of the picture, and of the grid [pixels]. */
   readonly #size = vector2()
@@ -176,9 +164,10 @@ export class LostLightGrid {
   constructor() {
     this.#marched = tableTarget('Welkin.LightShafts', 1, 1, 2)
     this.target = tableTarget('Welkin.LightShafts', 1, 1)
-    const [lost, parts] = this.#marched.textures
+    const [lost, light] = this.#marched.textures
+    light.format = RedFormat
     this.#lost = texture(lost)
-    this.#parts = texture(parts)
+    this.#light = texture(light)
     this.#texels = texture(this.target.texture)
   }
 
@@ -219,15 +208,14 @@ export class LostLightGrid {
   render(renderer: Renderer, version: number, march: (at: Vec2, pixel: Vec2) => LostLight): void {
     if (this.#passes.length === 0 || this.#compiled !== version) {
       for (const pass of this.#passes) pass.dispose()
-      const marched = outputs<[Vec4, Vec4]>(2, ([lostOut, partsOut]) => {
+      const marched = outputs<[Vec4, Vec4]>(2, ([lostOut, lightOut]) => {
         const pixel = uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
         const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
-        const found = march(at, pixel)
-        const { lost, all, whole } = found
-        const scale = float(LIGHT_SCALE).div(shownOf(found.rarity)).toConst()
+        const { lost, all, rarity, whole } = march(at, pixel)
+        const scale = float(LIGHT_SCALE).div(shownOf(rarity)).toConst()
         const light = log2(luminance(all).max(MIN_LIGHT).mul(LIGHT_SCALE).div(shownOf(whole)))
-        lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), light))
-        partsOut.assign(vec4(partsOf(found), depthOf(found.rarity)))
+        lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), depthOf(rarity)))
+        lightOut.assign(vec4(light))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -238,7 +226,7 @@ export class LostLightGrid {
     this.#passes[1].render(renderer, this.target)
   }
 
-  /** A texel of the target: the mean of the four pixels about a corner of the grid, or a pixel's part. */
+  /** A texel of the target: the mean of the four pixels about a corner of the grid, or a pixel. */
   #arrange(): Vec4 {
     const size = this.#gridSize
     const texel = uv().div(this.#texelSize).floor().toConst() as unknown as Vec2
@@ -246,16 +234,16 @@ export class LostLightGrid {
     const read = (source: TextureNode, place: Vec2): Vec4 =>
       sampleLevel0(source, place.clamp(vec2(0.5), size.sub(0.5)).div(size)).toConst()
     If(texel.x.greaterThan(size.x.add(1.5)), () => {
-      result.assign(read(this.#parts, texel.sub(vec2(size.x.add(1.5), -0.5)).toConst()))
+      result.assign(read(this.#lost, texel.sub(vec2(size.x.add(1.5), -0.5)).toConst()))
     }).Else(() => {
       // Depth, light of the air, light that is lost.
       const least = vec3(APART_DEPTH).toVar()
       const most = vec3(-APART_DEPTH).toVar()
       loop('corner', 4, index => {
         const at = texel.add(cornerOf(index)).sub(0.5).toConst() as Vec2
-        const [lost, parts] = [read(this.#lost, at), read(this.#parts, at)]
-        result.addAssign(vec4(lost.rgb, parts.w).mul(0.25))
-        const each = vec3(parts.w, lost.w, luminance(lost.rgb)).toConst()
+        const lost = read(this.#lost, at)
+        result.addAssign(lost.mul(0.25))
+        const each = vec3(lost.w, read(this.#light, at).r, luminance(lost.rgb)).toConst()
         least.assign(least.min(each))
         most.assign(most.max(each))
       })
@@ -314,14 +302,13 @@ export class LostLightGrid {
    * @param around - Mean around it.
    * @param seen - Its air.
    * @param tolerance - Octaves by which its depth may be off: it is as near to those around as that allows. Null is none.
-   * @param lit - Light of its air that is seen, given octaves by which what is seen is farther away, and the distance up to which
-   *   light is asked for [m]. Called in a branch.
+   * @param lit - Light of its air up to a distance [m]. Called in a branch.
    */
   read(
     { place: middle, mean }: Mean,
     { rarity, least }: SeenAir,
     tolerance: Float | null,
-    lit: (nearer: Float, most: Float) => Vec3
+    lit: (distance: Float) => Vec3
   ): Vec3 {
     const own = depthOf(rarity)
     const moved = (depth: Float): Float =>
@@ -356,10 +343,24 @@ export class LostLightGrid {
         weights.addAssign(weight)
       })
       sums.divAssign(weights)
-      const farther = sums.w.sub(own).add(2 * SAME_DEPTH)
-      const limit = this.#distanceAt(sums.w.add(farther.max(0)), least)
-      const most = farther.lessThan(SAME_DEPTH).select(limit, FAR) as Float
-      lost.assign(lit(moved(sums.w), most).mul(sums.rgb))
+      const farther = sums.w
+        .sub(own)
+        .add(2 * SAME_DEPTH)
+        .toConst()
+      const most = farther.lessThan(SAME_DEPTH).select(sums.w.add(farther.max(0)), LIT_DEPTH)
+      const depth = own.add(moved(sums.w)).min(most).toConst() as Float
+      const seen = shownOf(rarityAt(depth)).toVar() as Float
+      If(depth.sub(sums.w).abs().greaterThan(NEAR_MEAN), () => {
+        // None around is at its depth: light there and here.
+        const ratio = float(1).toVar()
+        loop('end', 2, index => {
+          const end = index.equal(0).select(sums.w, depth).toConst() as Float
+          const light = luminance(lit(this.#distanceAt(end, least)))
+          ratio.assign(light.max(MIN_LIGHT).div(ratio))
+        })
+        seen.assign(shownOf(rarityAt(sums.w)).mul(ratio))
+      })
+      lost.assign(sums.rgb.mul(seen.div(LIGHT_SCALE)))
     })
     return lost
   }

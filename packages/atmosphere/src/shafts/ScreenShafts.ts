@@ -22,7 +22,6 @@ import {
   type Mean,
   type SeenAir
 } from './LostLightGrid'
-import { seenLight, type SeenForeground } from './tsl/seenLight'
 import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf } from './tsl/without'
 import { DepthRays } from '../view/DepthRays'
@@ -40,11 +39,12 @@ const FAR_OCTAVES = 40
 /** Transmittance from which on a foreground is not seen. */
 const CLEAR = 0.99
 
-/** Air and foreground of a pixel, and octaves by which its distance may be off. */
+/** Air of a pixel. */
 interface Seen extends SeenAir {
-  /** Foreground, given octaves by which it is farther. */
-  readonly front?: (farther?: Float) => SeenForeground
+  /** Octaves by which its depth may be off. */
   readonly tolerance: Float | null
+  /** Foreground: log₂ of its distance [m], and the part of the light that passes it. */
+  readonly front?: { octaves: Float; passes: Float }
 }
 
 /** End of a view ray. */
@@ -157,11 +157,9 @@ export class ScreenShafts implements ScreenShadows {
     const at = this.#place
     const around = this.grid.meanAt(at)
     const seen = this.#seenAt(at, end, around, transmittance)
-    const { front, tolerance } = seen
-    const lost = this.grid.read(around, seen, tolerance, (farther, most) => {
-      const ray = this.#rayTo({ ...end, distance: end.distance.min(most).toConst() })
-      return seenLight(ray.distance, front?.(farther), this.#lightOn(ray), 1 - CLEAR).seen
-    })
+    const lost = this.grid.read(around, seen, seen.tolerance, distance =>
+      this.#litAir({ ...this.#rayTo(end), distance })
+    )
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -185,12 +183,7 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. With the mean `around` it, roughly. */
-  #seenAt(
-    at: Vec2,
-    end: RayEnd,
-    around?: Mean,
-    transmittance?: Float
-  ): Seen {
+  #seenAt(at: Vec2, end: RayEnd, around?: Mean, transmittance?: Float): Seen {
     const { foreground, grid } = this
     const least = grid.leastRarity(end.cosView)
     const whole = this.#rarityOf(end, least)
@@ -198,8 +191,7 @@ export class ScreenShafts implements ScreenShadows {
     const passes = transmittance ?? foreground.transmittanceAt(at)
     const isSeen = passes.lessThan(CLEAR).toConst()
     const octaves = float(FAR_OCTAVES).toVar()
-    const isForward = this.#isForward
-    const rarity = whole.add(isForward.mul(UNSEEN_RARITY)).toVar()
+    const rarity = whole.add(this.#isForward.mul(UNSEEN_RARITY)).toVar()
     If(isSeen, () => {
       const look = (): void => {
         octaves.assign(foreground.octavesAt(at, around !== undefined))
@@ -214,12 +206,8 @@ export class ScreenShafts implements ScreenShadows {
         }).Else(look)
       }
     })
-    const front = (farther?: Float): SeenForeground => ({
-      distance: (farther ? octaves.add(farther) : octaves).exp2().min(end.distance).toConst(),
-      before: passes.oneMinus().toConst(),
-      behind: passes.mul(isForward.oneMinus()).toConst()
-    })
-    return { rarity, least, front, tolerance: isSeen.select(foreground.tolerance, 0).toConst() }
+    const tolerance = isSeen.select(foreground.tolerance, 0).toConst() as Float
+    return { rarity, least, tolerance, front: { octaves, passes } }
   }
 
   /** 1/τ² up to the end of a ray. Ground of the planet before which nothing is drawn is told from the sky beside it. */
@@ -235,16 +223,16 @@ export class ScreenShafts implements ScreenShadows {
     const end = this.#endIn(renderer, at)
     const ray = this.#rayTo(end)
     const { distance } = ray
-    const { front: frontOf, rarity, least } = this.#seenAt(at, end)
-    const front = frontOf?.()
+    const { front, rarity, least } = this.#seenAt(at, end)
     const { isOrthographicCamera } = this.#shafts.camera as OrthographicCamera
     const start = isOrthographicCamera
       ? view.toMapped(vec3(this.#rays.position(renderer, at, float(0.5)).xy, 0))
       : undefined
     let seen: ShaftRay = { ...ray, start }
     if (front !== undefined) {
-      const { behind, distance: nearest } = front
-      const before = front.before.add(behind).toConst()
+      const nearest = front.octaves.exp2().min(distance).toConst() as Float
+      const behind = front.passes.mul(this.#isForward.oneMinus()).toConst() as Float
+      const before = front.passes.oneMinus().add(behind).toConst() as Float
       seen = {
         ...seen,
         distance: behind.greaterThan(MIN_TRANSMITTANCE).select(distance, nearest).toConst(),
@@ -252,9 +240,8 @@ export class ScreenShafts implements ScreenShadows {
       }
     }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
-    const { all, seen: lit } = seenLight(distance, front, this.#lightOn(ray))
     const whole = this.#rarityOf(end, least)
-    return { lost: this.#color(lost), lit, all, whole, rarity, least }
+    return { lost: this.#color(lost), all: this.#litAir(ray), whole, rarity, least }
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
@@ -289,11 +276,7 @@ export class ScreenShafts implements ScreenShadows {
     return unclampedSRGB(air.uniforms, light.mul(source.irradiance)).div(this.#gain).toConst()
   }
 
-  /** Light of the air on a ray up to a distance without shadows, as the grid keeps it. */
-  #lightOn(ray: ShaftRay): (distance: Float) => Vec3 {
-    return distance => this.#litAir({ ...ray, distance })
-  }
-
+  /** Light of the air on a ray without shadows, as the grid keeps it. */
   #litAir(ray: ShaftRay): Vec3 {
     const { cosView, cosViewLight, distance } = ray
     const { air, volume, viewpoint } = this.#shafts.view

@@ -1,4 +1,12 @@
-import { MathUtils, Matrix3, Matrix4, NearestFilter, RedFormat, RepeatWrapping, Vector3 } from 'three'
+import {
+  MathUtils,
+  Matrix3,
+  Matrix4,
+  NearestFilter,
+  RedFormat,
+  RepeatWrapping,
+  Vector3
+} from 'three'
 import type { RenderTarget, DepthTexture } from 'three'
 import { texture } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'

@@ -1,18 +1,10 @@
-import { atan, step, vec2 } from 'three/tsl'
+import { atan, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import {
-  gatherRed,
-  loadTexel,
-  mixed,
-  type Float,
-  type Vec2,
-  type Vec3,
-  type Vec4
-} from '../../tsl-types'
+import { gatherRed, mixed, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
 
-/** Columns and rows over which {@link ditheredDark} is spread, about as far: shadows of hills on clouds far away have edges in steps where it is one (*Fog from above*). */
-const SPREAD_COLUMNS = 1.5
-const SPREAD_ROWS = 6
+/** Columns and rows over which {@link softDark} is spread besides, about as far: without, shadows of hills on clouds far away have edges in steps (*Fog from above*). */
+const ASIDE_COLUMNS = 1
+const ASIDE_ROWS = 5
 
 /** Greatest cotangent of an angle that the map keeps, and the least of a view ray, which is greater than that of no occluder: half floats hold a little more. */
 export const MOST_COTANGENT = 6e4
@@ -104,32 +96,35 @@ export function columnAt(frame: PolarFrame, distance: Float): Float {
 export function darkPart(
   map: TextureNode,
   frame: PolarFrame,
-  { sinViewLight, cotangent, row }: PolarRay,
+  ray: PolarRay,
   distance: Float
 ): Float {
-  const place = vec2(columnAt(frame, distance.mul(sinViewLight)), row).toConst()
-  const first = place.floor().toConst()
-  const four = step(cotangent, gatherRed(map, first.add(1).mul(frame.texelSize))).toConst()
+  return darkAt(map, frame, ray, vec2(columnAt(frame, distance.mul(ray.sinViewLight)), ray.row))
+}
+
+/** Dark part of the air between the four rays of light about a place among columns and rows. */
+function darkAt(map: TextureNode, frame: PolarFrame, { cotangent }: PolarRay, at: Vec2): Float {
+  const place = at.toConst()
+  const first = place.floor().toConst() as Vec2
+  // Not a step: loops about it have a variable of that name.
+  const nearer = gatherRed(map, first.add(1).mul(frame.texelSize)).sub(cotangent)
+  const four = nearer.sign().max(0).toConst()
   return mixed(four as Vec4, place.sub(first).toConst())
 }
 
 /**
- * As {@link darkPart} in the mean of a little more, from one of the rays of light about: for what is read often, or has a history.
+ * As {@link darkPart}, from rays of light a little beside, by noise: edges become soft.
  *
  * @param noise - In [0, 1).
  */
-export function ditheredDark(
+export function softDark(
   map: TextureNode,
   frame: PolarFrame,
   ray: PolarRay,
   distance: Float,
   noise: Float
 ): Float {
-  const column = columnAt(frame, distance.mul(ray.sinViewLight))
-  // Noise of columns is apart from that of rows.
-  const aside = noise.mul(NOISE_STRIDE).fract().sub(0.5)
-  const x = column.add(aside.mul(SPREAD_COLUMNS)).round().clamp(0, frame.size.x.sub(1))
-  const y = ray.row.add(noise.sub(0.5).mul(SPREAD_ROWS)).round().mod(frame.size.y)
-  // Not a step: loops about it have a variable of that name.
-  return loadTexel(map, vec2(x, y)).r.greaterThanEqual(ray.cotangent).select(1, 0).toConst()
+  const aside = noise.mul(NOISE_STRIDE).fract().sub(0.5).mul(ASIDE_COLUMNS)
+  const column = columnAt(frame, distance.mul(ray.sinViewLight)).add(aside)
+  return darkAt(map, frame, ray, vec2(column, ray.row.add(noise.sub(0.5).mul(ASIDE_ROWS))))
 }
