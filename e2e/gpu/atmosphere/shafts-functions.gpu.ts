@@ -127,12 +127,12 @@ gpuTest(
       rarity: grid.rarityTo(distance.reciprocal(), least),
       least
     })
-    // Neighbours are at other depths and in other light, so that none are mixed; all are as good as without end.
+    const litTo = (distance: Float): Vec3 => vec3(distance.div(1e4)).toConst()
     const march = (_: Vec2, pixel: Vec2): LostLight => {
-      const isFar = pixel.x.add(pixel.y).mod(2).greaterThan(0.5)
-      const distance = isFar.select(1e4, 1000).toConst() as Float
-      const air = airTo(distance)
-      return { lost: vec3(part), all: vec3(distance.div(1e4)), whole: air.rarity, ...air }
+      const air = airTo(float(1000))
+      // More light in the one direction, of which as much more is lost.
+      const lit = (): Vec3 => litTo(float(1000)).mul(pixel.x.add(1))
+      return { lost: lit().mul(part), lit, whole: air.rarity, ...air }
     }
     grid.render(renderer, 1, march)
     // Rounding puts places a little beyond the middles of the first and the last pixels.
@@ -144,15 +144,12 @@ gpuTest(
     )
     const results = await evaluateOnGpu(
       renderer,
-      // Nearer than all, with half as much light up to there.
+      // Nearer than all.
       places.map(([x, y]) => [x, y, 1, 0]),
-      ({ x, y, z }) => {
-        const lit = (distance: Float): Vec3 => vec3(distance.greaterThan(10).select(2, 1))
-        return vec4(grid.read(grid.meanAt(vec2(x, y)), airTo(z), null, lit), 0)
-      }
+      ({ x, y, z }) => vec4(grid.read(grid.meanAt(vec2(x, y)), airTo(z), null, litTo), 0)
     )
     places.forEach((at, i) => {
-      expectClose(results[4 * i], part / 2, { relative: 2e-3 }, `at ${at.join(', ')}`)
+      expectClose(results[4 * i], part * 1e-4, { relative: 2e-3 }, `at ${at.join(', ')}`)
     })
     grid.dispose()
   }

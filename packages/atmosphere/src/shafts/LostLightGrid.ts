@@ -1,5 +1,5 @@
-import { RedFormat, type RenderTarget } from 'three'
-import { Fn, If, float, log2, luminance, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import type { RenderTarget } from 'three'
+import { Fn, If, float, log2, luminance, mix, step, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
@@ -14,6 +14,7 @@ import {
   type Vec4
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
+import { FAR } from './tsl/without'
 
 /** Octaves of depth by which pixels may differ and still share light. Smaller: the march's pixels show on slopes (*Towers in haze*). */
 const SAME_DEPTH = 0.35
@@ -41,8 +42,8 @@ const DISTINCT = 0.25
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
 
-/** Part of the light of clear air that a foreground leaves at most, to be told from none. Greater: thin clouds have the light of the air behind them. */
-const MOST_SHOWN = 0.8
+/** Square of the light of clear air over what a foreground leaves of it, at least, to be told from none. Less: thin clouds have the light of the air behind them. */
+const LEAST_HIDDEN = 1.6
 
 /** Greatest number that the targets keep: half floats hold a little more. */
 const MAX_KEPT = 6e4
@@ -69,6 +70,9 @@ const MAX_MIXED = Math.log2(MAX_KEPT) - 4
 /** Least light that other light is compared with [1/sr]. */
 const MIN_LIGHT = 1e-12
 
+/** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
+const PALE = 0.2
+
 /** Summand of places in the grid: rounding must not put whole ones into the cell before, and none is in the middle between pixels, where marks of two alone would count [pixels]. Less: lines a pixel wide where the spacing is even. */
 const ASIDE = 0.02
 
@@ -86,10 +90,18 @@ const depthOf = (rarity: Float): Float => log2(rarity).mul(-0.5).toConst()
  * @param behind - 1/τ² up to what is behind the foreground.
  */
 export function hasForeground({ mean }: Mean, behind: Float, transmittance: Float): Bool {
-  const [around, clear] = [rarityAt(mean.w), behind].map(shownOf)
-  const isNearer = around.lessThan(clear.mul(MOST_SHOWN))
-  // Those that are marked show all.
-  return isNearer.and(around.greaterThan(clear.mul(transmittance))) as Bool
+  // Reciprocal squares of what is shown. Those that are marked show all.
+  const [around, clear] = [rarityAt(mean.w), behind].map(rarity => rarity.add(1).toConst())
+  const isNearer = around.greaterThan(clear.mul(LEAST_HIDDEN))
+  return isNearer.and(around.mul(transmittance).mul(transmittance).lessThan(clear)) as Bool
+}
+
+/** Parts of the light that are lost, by colours. */
+function partsOf(lost: Vec3, lit: Vec3): Vec3 {
+  const all = luminance(lit).max(MIN_LIGHT).toConst()
+  const isBright = vec3(step(all.mul(PALE), lit)).toConst()
+  const [taken, whole] = [mix(vec3(luminance(lost)), lost, isBright), mix(vec3(all), lit, isBright)]
+  return taken.div(whole).clamp(-MAX_KEPT, 1)
 }
 
 /** First or last in each direction, of four by their number. */
@@ -118,8 +130,8 @@ export interface LostLight extends SeenAir {
   readonly whole: Float
   /** Light that it loses. */
   readonly lost: Vec3
-  /** Light of its air up to what was drawn, if nothing cast shadows. */
-  readonly all: Vec3
+  /** Light of its air up to a distance [m], but not beyond what was drawn, if nothing cast shadows. */
+  readonly lit: (distance: Float) => Vec3
 }
 
 /**
@@ -127,21 +139,20 @@ export interface LostLight extends SeenAir {
  * depth: from nine, of which any four that touch have samples in all places of their steps.
  *
  * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
- * grid, with their depth if they may be mixed, which most pixels read once; and the pixels of the grid. Other pixels take from
- * nine of them where light is steep, as about the sun, and from four beside
+ * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of
+ * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and of four beside
  * silhouettes and edges of clouds. Those that are alike in light and depth count most. One that is farther than all loses light up to their depth:
- * they know nothing of the air beyond. Light is kept for as much air as there is without end, of which a pixel sees its part; where none around is at its depth,
- * it loses of its own light the part that they lose.
+ * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
  *
  * A depth is log₂ of the optical path of clear air, which thins out with height, that has as much light as is seen: clouds hide some of it.
  * It is a measure, no more: a pixel finds 1/τ², which needs no root and no quotient.
  */
 export class LostLightGrid {
-  /** Lost light with log₂ of the depth; log₂ of the light that there is. */
+  /** Lost light with log₂ of the depth; its part of the light up to there with log₂ of all light that there is. */
   readonly #marched: RenderTarget
   readonly target: RenderTarget
   readonly #lost: TextureNode
-  readonly #light: TextureNode
+  readonly #parts: TextureNode
   readonly #texels: TextureNode
   /** Size of the picture, and of the grid [pixels]. */
   readonly #size = vector2()
@@ -164,10 +175,9 @@ export class LostLightGrid {
   constructor() {
     this.#marched = tableTarget('Welkin.LightShafts', 1, 1, 2)
     this.target = tableTarget('Welkin.LightShafts', 1, 1)
-    const [lost, light] = this.#marched.textures
-    light.format = RedFormat
+    const [lost, parts] = this.#marched.textures
     this.#lost = texture(lost)
-    this.#light = texture(light)
+    this.#parts = texture(parts)
     this.#texels = texture(this.target.texture)
   }
 
@@ -208,14 +218,17 @@ export class LostLightGrid {
   render(renderer: Renderer, version: number, march: (at: Vec2, pixel: Vec2) => LostLight): void {
     if (this.#passes.length === 0 || this.#compiled !== version) {
       for (const pass of this.#passes) pass.dispose()
-      const marched = outputs<[Vec4, Vec4]>(2, ([lostOut, lightOut]) => {
+      const marched = outputs<[Vec4, Vec4]>(2, ([lostOut, partsOut]) => {
         const pixel = uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
         const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
-        const { lost, all, rarity, whole } = march(at, pixel)
+        const { lost, lit, rarity, whole, least } = march(at, pixel)
+        const depth = depthOf(rarity)
         const scale = float(LIGHT_SCALE).div(shownOf(rarity)).toConst()
-        const light = log2(luminance(all).max(MIN_LIGHT).mul(LIGHT_SCALE).div(shownOf(whole)))
-        lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), depthOf(rarity)))
-        lightOut.assign(vec4(light))
+        const all = luminance(lit(float(FAR))).max(MIN_LIGHT)
+        const light = log2(all.mul(LIGHT_SCALE).div(shownOf(whole)))
+        const seen = lit(this.#distanceAt(depth, least))
+        lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), depth))
+        partsOut.assign(vec4(partsOf(lost, seen), light))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -234,7 +247,8 @@ export class LostLightGrid {
     const read = (source: TextureNode, place: Vec2): Vec4 =>
       sampleLevel0(source, place.clamp(vec2(0.5), size.sub(0.5)).div(size)).toConst()
     If(texel.x.greaterThan(size.x.add(1.5)), () => {
-      result.assign(read(this.#lost, texel.sub(vec2(size.x.add(1.5), -0.5)).toConst()))
+      const place = texel.sub(vec2(size.x.add(1.5), -0.5)).toConst() as Vec2
+      result.assign(vec4(read(this.#parts, place).rgb, read(this.#lost, place).w))
     }).Else(() => {
       // Depth, light of the air, light that is lost.
       const least = vec3(APART_DEPTH).toVar()
@@ -243,7 +257,7 @@ export class LostLightGrid {
         const at = texel.add(cornerOf(index)).sub(0.5).toConst() as Vec2
         const lost = read(this.#lost, at)
         result.addAssign(lost.mul(0.25))
-        const each = vec3(lost.w, read(this.#light, at).r, luminance(lost.rgb)).toConst()
+        const each = vec3(lost.w, read(this.#parts, at).w, luminance(lost.rgb)).toConst()
         least.assign(least.min(each))
         most.assign(most.max(each))
       })
@@ -334,7 +348,7 @@ export class LostLightGrid {
         const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
         const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
         const other = sampleLevel0(this.#texels, at).toConst()
-        const light = log2(shownOf(rarityAt(other.w)).div(known))
+        const light = rarity.add(1).div(rarityAt(other.w).add(1)).log2().mul(0.5)
         const apart = other.w.sub(own).abs().min(DISTINCT).max(light.abs()).toConst()
         const near = apart.mul(apart).add(even).reciprocal().toConst()
         // Else what is beside clouds, whose depths are rough, has a part of those that are far from its own.
@@ -349,18 +363,7 @@ export class LostLightGrid {
         .toConst()
       const most = farther.lessThan(SAME_DEPTH).select(sums.w.add(farther.max(0)), LIT_DEPTH)
       const depth = own.add(moved(sums.w)).min(most).toConst() as Float
-      const seen = shownOf(rarityAt(depth)).toVar() as Float
-      If(depth.sub(sums.w).abs().greaterThan(NEAR_MEAN), () => {
-        // None around is at its depth: light there and here.
-        const ratio = float(1).toVar()
-        loop('end', 2, index => {
-          const end = index.equal(0).select(sums.w, depth).toConst() as Float
-          const light = luminance(lit(this.#distanceAt(end, least)))
-          ratio.assign(light.max(MIN_LIGHT).div(ratio))
-        })
-        seen.assign(shownOf(rarityAt(sums.w)).mul(ratio))
-      })
-      lost.assign(sums.rgb.mul(seen.div(LIGHT_SCALE)))
+      lost.assign(lit(this.#distanceAt(depth, least)).mul(sums.rgb))
     })
     return lost
   }

@@ -1,5 +1,5 @@
 import { Vector2, type OrthographicCamera } from 'three'
-import { Fn, If, bool, float, screenUV, uv, vec3 } from 'three/tsl'
+import { Fn, If, bool, float, mix, screenUV, uv, vec3 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
@@ -157,9 +157,7 @@ export class ScreenShafts implements ScreenShadows {
     const at = this.#place
     const around = this.grid.meanAt(at)
     const seen = this.#seenAt(at, end, around, transmittance)
-    const lost = this.grid.read(around, seen, seen.tolerance, distance =>
-      this.#litAir({ ...this.#rayTo(end), distance })
-    )
+    const lost = this.grid.read(around, seen, seen.tolerance, this.#lightOn(this.#rayTo(end)))
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -241,7 +239,7 @@ export class ScreenShafts implements ScreenShadows {
     }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
     const whole = this.#rarityOf(end, least)
-    return { lost: this.#color(lost), all: this.#litAir(ray), whole, rarity, least }
+    return { lost: this.#color(lost), lit: this.#lightOn(ray), whole, rarity, least }
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
@@ -276,18 +274,23 @@ export class ScreenShafts implements ScreenShadows {
     return unclampedSRGB(air.uniforms, light.mul(source.irradiance)).div(this.#gain).toConst()
   }
 
-  /** Light of the air on a ray without shadows, as the grid keeps it. */
+  /** Light of the air on a ray without shadows up to a distance, or its end, as the grid keeps it. */
+  #lightOn(ray: ShaftRay): (distance: Float) => Vec3 {
+    return distance => this.#litAir({ ...ray, distance: ray.distance.min(distance).toConst() })
+  }
+
   #litAir(ray: ShaftRay): Vec3 {
     const { cosView, cosViewLight, distance } = ray
     const { air, volume, viewpoint } = this.#shafts.view
     const limits = rayLimits(viewpoint, cosView)
     const at = [cosView, cosViewLight, limits, distance] as const
-    const { radiance } = sampleVolume(air.uniforms, volume, viewpoint, ...at)
+    const { radiance, depth } = sampleVolume(air.uniforms, volume, viewpoint, ...at)
     const light = radiance.toVar()
     If(this.#hasMedia.greaterThan(0), () => {
       const media = this.#shafts.shadowedAir.mediaOn({ view: this.#shafts.view, ...ray })
-      for (const { transmittance, singleScattered } of media) {
-        light.assign(light.mul(transmittance).add(singleScattered ?? 0))
+      for (const { transmittance, ahead, singleScattered } of media) {
+        const left = ahead ? mix(transmittance, 1, ahead(depth)) : transmittance
+        light.assign(light.mul(left).add(singleScattered ?? 0))
       }
     })
     return this.#color(light)
