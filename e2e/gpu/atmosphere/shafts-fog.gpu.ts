@@ -109,7 +109,7 @@ gpuTest(
   async t => {
     const renderer = await t.createRenderer(size)
     const [elevation, distance] = [25, 8000]
-    const set = stage(renderer, elevation, { quality: 'reference' }, true)
+    const set = stage(renderer, elevation, { quality: 'medium' }, true)
     const { scene, camera, shafts, atmosphere } = set
     shafts.add({ castInto: () => ({ transmittance: () => () => float(0) }) })
     addBox(scene, [0, 0, -distance - 50], [9000, 4000, 100]).material.color.set(0)
@@ -134,6 +134,8 @@ gpuTest(
     const [before, all] = [middle, distance].map(far => inScatter(air, null, ray, far)[1])
     const left = [Math.exp(-1), (before + Math.exp(-depth) * (all - before)) / all]
     for (const draw of [set.draw, forward]) {
+      // The volume that materials read is too coarse for a window of a degree.
+      if (draw === forward) shafts.set({ quality: 'reference' })
       const lossIn = async (fog?: (typeof fogs)[number]): Promise<number> => {
         if (fog) atmosphere.add(fog)
         if (draw === forward) atmosphere.add(shafts)

@@ -1,5 +1,5 @@
 import type { AirShadow, LightShaftsQuality, ScreenShadows } from '@welkin/atmosphere'
-import { Fn, float, vec3, vec4 } from 'three/tsl'
+import { Fn, float, log2, vec3, vec4 } from 'three/tsl'
 import {
   Node,
   NodeUpdateType,
@@ -65,7 +65,8 @@ async function lostIn(
     ({ distance }) =>
       arrives(distance)
   shafts.add({ castInto: () => ({ transmittance }) })
-  const foreground = { isDrawn: true, tolerance: 0, distanceAt, transmittanceAt }
+  const octavesAt = (at: Vec2): Float => log2(distanceAt(at))
+  const foreground = { isDrawn: true, tolerance: 0, octavesAt, transmittanceAt }
   const screen = shafts.upTo(depth, foreground)
   await set.draw()
   const pipeline = new RenderPipeline(renderer)

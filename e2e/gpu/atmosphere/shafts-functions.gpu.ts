@@ -64,7 +64,7 @@ gpuTest('spaces samples as the float64 twin does', async t => {
 gpuTest('has a view ray in the row of the rays of light that it crosses', async t => {
   const columns = 512
   const [even, greatest] = [30, 30_000]
-  const logScale = 1 / Math.log1p(greatest / even)
+  const logScale = (columns - 1) / Math.log2(1 + greatest / even)
   const light = new Vector3(0.3, 0.5, -0.6).normalize()
   const across = new Vector3(0, 1, 0).cross(light).normalize()
   const along = light.clone().cross(across)
@@ -72,11 +72,11 @@ gpuTest('has a view ray in the row of the rays of light that it crosses', async 
   const frame: PolarFrame = {
     across: vector(across),
     along: vector(along),
-    evenDistance: float(even),
+    perMeter: float(1 / even),
     logScale: float(logScale),
     logOffset: float(0),
-    columns: float(columns),
-    rows: float(4 * columns)
+    size: vec2(columns, 4 * columns),
+    texelSize: vec2(1 / columns, 1 / (4 * columns))
   }
   const next = random(5)
   const texels = Array.from({ length: 32 }, () => [next(), next(), 1e4 * (2 * next() - 1)])
@@ -88,24 +88,22 @@ gpuTest('has a view ray in the row of the rays of light that it crosses', async 
     const polar = polarRay(frame, direction, direction.dot(vector(light)))
     const column = columnAt(frame, distance)
     const crossing = polar.sinViewLight.mul(point.length()).div(distance)
-    // The place among rows, of which two are read.
-    const row = polar.rows[0]
-      .add(polar.betweenRows)
-      .add(0.5)
-      .div(4 * columns)
-    return vec4(column, row.fract(), polar.angle, crossing)
+    const row = polar.row.add(0.5).div(4 * columns)
+    return vec4(column, row.fract(), polar.cotangent, crossing)
   })
   texels.forEach(([u, v, z], i) => {
-    const [column, row, angle, crossing] = results.subarray(4 * i, 4 * i + 4)
-    const position = Math.max((u * columns - 0.5) / (columns - 1), 0)
-    const distance = Math.max(even * Math.expm1(position / logScale), 1e-3 * even)
+    const [column, row, cotangent, crossing] = results.subarray(4 * i, 4 * i + 4)
+    const position = Math.max(u * columns - 0.5, 0)
+    const distance = Math.max(even * (2 ** (position / logScale) - 1), 1e-3 * even)
     const turn = (row - v + 1.5) % 1
     expectClose((column + 0.5) / columns, u, { absolute: 2e-5 }, 'column')
     // Near the line to the light float32 has few directions.
     const blur = 3e-7 * (1 + Math.abs(z) / distance)
     expectClose(turn, 0.5, { absolute: 2e-5 + blur }, 'row')
-    // WGSL asks 4096 units in the last place of atan2, and software gives no more.
-    expectClose(angle, Math.atan2(distance, Math.abs(z)), { absolute: 1e-4 }, 'angle')
+    // As of no occluder at most, where a ray goes right away from the light.
+    const expected = Math.max(z / distance, -5e4)
+    const error = (2 ** -11 + 4 * blur) * (1 + Math.abs(expected))
+    expectClose(cotangent, expected, { absolute: error }, 'cotangent of the angle')
     // Of sine and cosine it asks 2⁻¹¹.
     expectClose(
       crossing,
@@ -124,18 +122,17 @@ gpuTest(
     const grid = new LostLightGrid()
     grid.resize(width, height, 2)
     grid.setAir(1, 1, 0, 6.36e6)
-    const thinning = float(1e-8) as Float
+    const least = float(0) as Float
     const airTo = (distance: Float): SeenAir => ({
-      path: grid.pathTo(distance, thinning),
-      thinning
+      rarity: grid.rarityTo(distance.reciprocal(), least),
+      least
     })
-    // Neighbours are at other depths and in other light, so that none are mixed.
+    const litTo = (distance: Float): Vec3 => vec3(distance.div(1e4)).toConst()
     const march = (_: Vec2, pixel: Vec2): LostLight => {
-      const isFar = pixel.x.add(pixel.y).mod(2).greaterThan(0.5)
-      const distance = isFar.select(1e4, 1000).toConst() as Float
-      const lit = vec3(distance.div(1e4)).toConst() as Vec3
-      const air = airTo(distance)
-      return { lost: lit.mul(part), lit, all: lit, whole: air.path, ...air }
+      const air = airTo(float(1000))
+      // More light in the one direction, of which as much more is lost.
+      const lit = (): Vec3 => litTo(float(1000)).mul(pixel.x.add(1))
+      return { lost: lit().mul(part), lit, whole: air.rarity, ...air }
     }
     grid.render(renderer, 1, march)
     // Rounding puts places a little beyond the middles of the first and the last pixels.
@@ -148,15 +145,11 @@ gpuTest(
     const results = await evaluateOnGpu(
       renderer,
       // Nearer than all.
-      places.map(([x, y]) => [x, y, 100, 0]),
-      ({ x, y, z }) =>
-        vec4(
-          grid.read(vec2(x, y), airTo(z), null, () => vec3(2)),
-          0
-        )
+      places.map(([x, y]) => [x, y, 1, 0]),
+      ({ x, y, z }) => vec4(grid.read(grid.meanAt(vec2(x, y)), airTo(z), null, litTo), 0)
     )
     places.forEach((at, i) => {
-      expectClose(results[4 * i], 2 * part, { relative: 2e-3 }, `at ${at.join(', ')}`)
+      expectClose(results[4 * i], part * 1e-4, { relative: 2e-3 }, `at ${at.join(', ')}`)
     })
     grid.dispose()
   }

@@ -217,7 +217,7 @@ gpuTest(
       for (const quality of ['low', 'medium', 'high'] as const) {
         const bytes = (await sizeOf(path, quality)) - none
         t.note(`${path}, ${quality}: ${(bytes / 1e6).toFixed(2)} MB`)
-        expectTrue(bytes > 1e6 && bytes <= MEMORY, `${path} takes ${bytes} B at ${quality}`)
+        expectTrue(bytes > 5e5 && bytes <= MEMORY, `${path} takes ${bytes} B at ${quality}`)
       }
     }
   },

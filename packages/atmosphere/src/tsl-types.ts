@@ -1,5 +1,5 @@
 // What @types/three 0.187 lacks or gets wrong, in one place.
-import { Loop as threeLoop, ivec2, uniformArray as threeUniformArray } from 'three/tsl'
+import { Loop as threeLoop, ivec2, mix, uniformArray as threeUniformArray } from 'three/tsl'
 import type { Vector4 } from 'three'
 import type { Node, TextureNode } from 'three/webgpu'
 
@@ -36,6 +36,17 @@ export const vec4Array = (values: Vector4[]): Vec4Array =>
 /** Reads a texture bilinearly, at its only level, wherever the control flow is. */
 export const sampleLevel0 = (source: TextureNode, uv: Vec2): Vec4 =>
   (source as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } }).sample(uv).level(0)
+
+/** Red of the four texels about a corner, at (0, 1), (1, 1), (1, 0) and (0, 0) of u and v. */
+export const gatherRed = (source: TextureNode, corner: Vec2): Vec4 =>
+  (source as unknown as { sample(uv: Vec2): { gather(channel: number): Vec4 } })
+    .sample(corner)
+    .gather(0)
+    .toConst()
+
+/** Mean of what {@link gatherRed} has read, by the place between the texels, in [0, 1]². */
+export const mixed = ({ x, y, z, w }: Vec4, part: Vec2): Float =>
+  mix(mix(w, z, part.x), mix(x, y, part.x), part.y).toConst()
 
 /** Reads a texel as it is. */
 export const loadTexel = (source: TextureNode, texel: Vec2): Vec4 =>

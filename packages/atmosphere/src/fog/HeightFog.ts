@@ -213,6 +213,7 @@ export class HeightFog implements SkyLayer {
     const { through, depthAt } = fog
     return {
       front: fog.middleDistance,
+      ahead: depth => partAhead({ ...ray, distance }, fog.segment, depth),
       transmittance: through,
       singleScattered: isLit ? once : null,
       multiplyScattered: often,

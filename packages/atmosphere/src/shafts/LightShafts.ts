@@ -57,7 +57,7 @@ const _axes = new Matrix4()
  * Clouds, hills and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`, or a `heightFieldShadow`. They need no
  * shadow map of the light.
  *
- * Needs a texture of 1 MB, and 4 bytes a pixel of the picture (1 at `'low'` and `'medium'` quality).
+ * Needs a texture of 0.5 MB, and 4 bytes a pixel of the picture (1 at `'low'` and `'medium'` quality).
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
  *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",
@@ -236,7 +236,6 @@ export class LightShafts implements ShadowedShafts {
     const view = atmosphere.viewOf(camera, source)
     const isLit = this.#enabled && this.#setStrength > 0 && view?.isLit && source.lightsAir
     const quality = qualities[this.#quality]
-    const { groups, samples, inFog } = quality
     if (isLit && frame && drawShadow(this.light, frame, camera)) {
       // Nodes of one render share the map.
       const render = `${frame.frameId} ${frame.renderId}`
@@ -247,9 +246,7 @@ export class LightShafts implements ShadowedShafts {
     this.map.update(renderer, view!, atmosphere.space, maps, quality)
     this.#isActive = maps.length > 0
     if (isLit) this.#updateShadows(view, renderer)
-    steps.groups.value = groups
-    steps.samples.value = samples
-    steps.inFog.value = inFog
+    for (const name of ['groups', 'samples', 'inFog'] as const) steps[name].value = quality[name]
     return true
   }
 

@@ -6,6 +6,7 @@ import { RADIANCE_SCALE } from '../tables/tableSizes'
 import {
   loop,
   sampleLevel0,
+  type Bool,
   type Float,
   type Int,
   type Vec2,
@@ -41,13 +42,16 @@ const DISTINCT = 0.25
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
 
+/** Square of the light of clear air over what a foreground leaves of it, at least, to be told from none. Less: thin clouds have the light of the air behind them. */
+const LEAST_HIDDEN = 1.6
+
 /** Greatest number that the targets keep: half floats hold a little more. */
 const MAX_KEPT = 6e4
 
 /** Scale of light in the targets. */
 const LIGHT_SCALE = RADIANCE_SCALE / 8
 
-/** Least of 1 − x², where x is the part of a ray's air up to a depth: the sky is no farther. Smaller: half floats have noise there. */
+/** Least part of 1/τ² that is left without that of the ray without end: the sky is no farther. Smaller: half floats have noise there. */
 const LEAST_LEFT = 0.01
 
 /** Least extinction of the air, and the least part by which it thins out with each metre of height [1/m]. */
@@ -57,8 +61,8 @@ const LEAST_THINNING = 1e-9
 /** Height over which the thinning of the air is found [m]. */
 export const THIN_HEIGHT = 1000
 
-/** Least optical path of what is seen [–]. */
-const MIN_PATH = 1e-7
+/** Least 1/τ² of what is seen through a foreground [–]. */
+const LEAST_RARITY = 1e-6
 
 /** Greatest light that is mixed [octaves]. */
 const MAX_MIXED = Math.log2(MAX_KEPT) - 4
@@ -69,19 +73,36 @@ const MIN_LIGHT = 1e-12
 /** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
 const PALE = 0.2
 
-/** Summand of places in the grid, whose rounding must not put whole ones into the cell before [pixels]. */
-const ROUNDING = 1e-3
+/** Summand of places in the grid: rounding must not put whole ones into the cell before, and none is in the middle between pixels, where marks of two alone would count [pixels]. Less: lines a pixel wide where the spacing is even. */
+const ASIDE = 0.02
+
+/** Part of the light of clear air without end that comes from an optical path τ: much as 1 − exp(−τ) is τ/√(1 + τ²), by 1/τ². */
+const shownOf = (rarity: Float): Float => rarity.add(1).inverseSqrt().toConst()
+
+/** 1/τ² by log₂ τ, and the other way round. */
+export const rarityAt = (depth: Float): Float => depth.mul(-2).exp2().toConst()
+const depthOf = (rarity: Float): Float => log2(rarity).mul(-0.5).toConst()
+
+/**
+ * True if pixels around have a foreground before clear air that accounts for a pixel's own: as much light is seen as passes it
+ * from behind, or more, and less than without it.
+ *
+ * @param behind - 1/τ² up to what is behind the foreground.
+ */
+export function hasForeground({ mean }: Mean, behind: Float, transmittance: Float): Bool {
+  // Reciprocal squares of what is shown. Those that are marked show all.
+  const [around, clear] = [rarityAt(mean.w), behind].map(rarity => rarity.add(1).toConst())
+  const isNearer = around.greaterThan(clear.mul(LEAST_HIDDEN))
+  return isNearer.and(around.mul(transmittance).mul(transmittance).lessThan(clear)) as Bool
+}
 
 /** Parts of the light that are lost, by colours. */
-function partsOf({ lost, lit }: LostLight): Vec3 {
+function partsOf(lost: Vec3, lit: Vec3): Vec3 {
   const all = luminance(lit).max(MIN_LIGHT).toConst()
   const isBright = vec3(step(all.mul(PALE), lit)).toConst()
   const [taken, whole] = [mix(vec3(luminance(lost)), lost, isBright), mix(vec3(all), lit, isBright)]
   return taken.div(whole).clamp(-MAX_KEPT, 1)
 }
-
-/** Part of the light of clear air without end that comes from an optical path: as if 1/(1 + τ) were left of it beyond. */
-const shownOf = (path: Float): Float => path.div(path.add(1)).toConst()
 
 /** First or last in each direction, of four by their number. */
 function cornerOf(index: Int): Vec2 {
@@ -89,23 +110,28 @@ function cornerOf(index: Int): Vec2 {
   return vec2(float(index).sub(row.mul(2)), row)
 }
 
-/** Air of a ray, as far as a picture shows it. */
-export interface SeenAir {
-  /** Optical path in clear air that gives as much light as is seen: see {@link LostLightGrid.pathTo} [–]. */
-  readonly path: Float
-  /** See {@link LostLightGrid.thinningOn}. */
-  readonly thinning: Float
+/** Mean of pixels of the grid: light that is lost, and depth; and its place among the texels. */
+export interface Mean {
+  readonly mean: Vec4
+  readonly place: Vec2
 }
 
-/** Light of a ray. */
+/** Air of a ray, as far as a picture shows it. */
+export interface SeenAir {
+  /** 1/τ², where τ is the optical path in clear air that gives as much light as is seen: see {@link LostLightGrid.rarityTo} [–]. */
+  readonly rarity: Float
+  /** That of the ray without end. */
+  readonly least: Float
+}
+
+/** Light of a ray, linear sRGB of about that for unit irradiance. */
 export interface LostLight extends SeenAir {
-  /** Path to what was drawn, whatever is before it. */
+  /** 1/τ² up to what was drawn, whatever is before it. */
   readonly whole: Float
-  /** Light that it loses, linear sRGB of about that for unit irradiance. */
+  /** Light that it loses. */
   readonly lost: Vec3
-  /** Light of its air that is seen if nothing cast shadows, likewise; and all of it, up to what was drawn. */
-  readonly lit: Vec3
-  readonly all: Vec3
+  /** Light of its air up to a distance [m], but not beyond what was drawn, if nothing cast shadows. */
+  readonly lit: (distance: Float) => Vec3
 }
 
 /**
@@ -119,10 +145,10 @@ export interface LostLight extends SeenAir {
  * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
  *
  * A depth is log₂ of the optical path of clear air, which thins out with height, that has as much light as is seen: clouds hide some of it.
- * It is a measure, no more: a pixel finds it with two square roots, two quotients and a logarithm less than of an exponential profile.
+ * It is a measure, no more: a pixel finds 1/τ², which needs no root and no quotient.
  */
 export class LostLightGrid {
-  /** Lost light with log₂ of the light that there is; its part of that with log₂ of the depth. */
+  /** Lost light with log₂ of the depth; its part of the light up to there with log₂ of all light that there is. */
   readonly #marched: RenderTarget
   readonly target: RenderTarget
   readonly #lost: TextureNode
@@ -138,9 +164,9 @@ export class LostLightGrid {
   readonly #offset = vector2()
   /** Reciprocal of the pixels of the picture from one that is marched to the next. */
   readonly #density = number(1)
-  /** Extinction of the air at the camera, the least of all colours [1/m]. Greater: dark pixels along the horizon (*Ridge at sunrise*). */
-  readonly #extinction = number(1)
-  /** Part by which the air thins out with each metre of height, and the least with each metre of a ray [1/m]. */
+  /** Reciprocal of the extinction of the air at the camera, the least of all colours [m]. Less: dark pixels along the horizon (*Ridge at sunrise*). */
+  readonly #freePath = number(1)
+  /** Part by which the air thins out with each metre of height, and the least with each metre of a ray, over its extinction [–]. */
   readonly #thinning = number(1)
   readonly #grazing = number(1)
   #passes: readonly FragmentPass[] = []
@@ -165,7 +191,7 @@ export class LostLightGrid {
     this.target.setSize(2 * x + 2, y + 1)
     const texelSize = this.#texelSize.value.set(1 / (2 * x + 2), 1 / (y + 1))
     this.#scale.value.copy(this.#size.value).divideScalar(spacing).multiply(texelSize)
-    this.#offset.value.setScalar(1 - 0.5 / spacing).multiply(texelSize)
+    this.#offset.value.setScalar(1 + ASIDE - 0.5 / spacing).multiply(texelSize)
   }
 
   /**
@@ -177,10 +203,10 @@ export class LostLightGrid {
   setAir(air: number, above: number, fog: number, radius: number): void {
     const whole = Math.max(air, LEAST_EXTINCTION) + fog
     const thinning = Math.max((air - above) / whole / THIN_HEIGHT, LEAST_THINNING)
-    this.#extinction.value = whole
-    this.#thinning.value = thinning
+    this.#freePath.value = 1 / whole
+    this.#thinning.value = thinning / whole
     // Half of the air on a level ray, π r/(2k) under a root.
-    this.#grazing.value = Math.sqrt((2 * thinning) / (Math.PI * radius))
+    this.#grazing.value = Math.sqrt((2 * thinning) / (Math.PI * radius)) / whole
   }
 
   /**
@@ -195,13 +221,14 @@ export class LostLightGrid {
       const marched = outputs<[Vec4, Vec4]>(2, ([lostOut, partsOut]) => {
         const pixel = uv().mul(this.#gridSize).floor().toConst() as unknown as Vec2
         const at = pixel.div(this.#density).add(0.5).div(this.#size).toConst() as Vec2
-        const found = march(at, pixel)
-        const { lost, all, whole } = found
-        const path = found.path.max(MIN_PATH).toConst() as Float
-        const scale = float(LIGHT_SCALE).div(shownOf(path)).toConst()
-        const light = log2(luminance(all).max(MIN_LIGHT).mul(LIGHT_SCALE).div(shownOf(whole)))
-        lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), light))
-        partsOut.assign(vec4(partsOf(found), log2(path)))
+        const { lost, lit, rarity, whole, least } = march(at, pixel)
+        const depth = depthOf(rarity)
+        const scale = float(LIGHT_SCALE).div(shownOf(rarity)).toConst()
+        const all = luminance(lit(float(FAR))).max(MIN_LIGHT)
+        const light = log2(all.mul(LIGHT_SCALE).div(shownOf(whole)))
+        const seen = lit(this.#distanceAt(depth, least))
+        lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), depth))
+        partsOut.assign(vec4(partsOf(lost, seen), light))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -212,7 +239,7 @@ export class LostLightGrid {
     this.#passes[1].render(renderer, this.target)
   }
 
-  /** A texel of the target: the mean of the four pixels about a corner of the grid, or a pixel's part. */
+  /** A texel of the target: the mean of the four pixels about a corner of the grid, or a pixel. */
   #arrange(): Vec4 {
     const size = this.#gridSize
     const texel = uv().div(this.#texelSize).floor().toConst() as unknown as Vec2
@@ -220,16 +247,17 @@ export class LostLightGrid {
     const read = (source: TextureNode, place: Vec2): Vec4 =>
       sampleLevel0(source, place.clamp(vec2(0.5), size.sub(0.5)).div(size)).toConst()
     If(texel.x.greaterThan(size.x.add(1.5)), () => {
-      result.assign(read(this.#parts, texel.sub(vec2(size.x.add(1.5), -0.5)).toConst()))
+      const place = texel.sub(vec2(size.x.add(1.5), -0.5)).toConst() as Vec2
+      result.assign(vec4(read(this.#parts, place).rgb, read(this.#lost, place).w))
     }).Else(() => {
       // Depth, light of the air, light that is lost.
       const least = vec3(APART_DEPTH).toVar()
       const most = vec3(-APART_DEPTH).toVar()
       loop('corner', 4, index => {
         const at = texel.add(cornerOf(index)).sub(0.5).toConst() as Vec2
-        const [lost, parts] = [read(this.#lost, at), read(this.#parts, at)]
-        result.addAssign(vec4(lost.rgb, parts.w).mul(0.25))
-        const each = vec3(parts.w, lost.w, luminance(lost.rgb)).toConst()
+        const lost = read(this.#lost, at)
+        result.addAssign(lost.mul(0.25))
+        const each = vec3(lost.w, read(this.#parts, at).w, luminance(lost.rgb)).toConst()
         least.assign(least.min(each))
         most.assign(most.max(each))
       })
@@ -243,79 +271,76 @@ export class LostLightGrid {
     return result
   }
 
-  /** Part by which the air on a ray thins out with each metre [1/m]; `cosView` is the cosine of its angle from the zenith. */
-  thinningOn(cosView: Float): Float {
-    return cosView.mul(this.#thinning).max(this.#grazing).toConst()
-  }
-
-  /** Optical path of clear air up to a distance [m], which thins out: d/√(1 + (kd)²), much as 1 − exp(−kd) over k. */
-  pathTo(distance: Float, thinning: Float): Float {
-    const thinned = distance.mul(thinning).toConst() as Float
-    const even = thinned.mul(thinned).add(1).inverseSqrt().mul(distance)
-    return even.mul(this.#extinction).toConst()
-  }
-
-  /** Distance up to which the air has an optical path [m]. */
-  #distanceAt(path: Float, thinning: Float): Float {
-    const even = path.div(this.#extinction).toConst() as Float
-    const thinned = even.mul(thinning).toConst() as Float
-    return even.mul(thinned.mul(thinned).oneMinus().max(LEAST_LEFT).inverseSqrt())
+  /** 1/τ² of a ray without end; `cosView` is the cosine of its angle from the zenith. */
+  leastRarity(cosView: Float): Float {
+    const thinning = cosView.mul(this.#thinning).max(this.#grazing).toConst() as Float
+    return thinning.mul(thinning).toConst()
   }
 
   /**
-   * Path of a foreground, through which a part passes of what is behind: each has its part of the light that is seen.
+   * 1/τ² of air that thins out, up to a distance d: of τ = σ d/√(1 + (kd)²), much as σ (1 − exp(−kd))/k.
    *
-   * @param front - Path up to the foreground.
-   * @param behind - Path up to what is behind it; 0 where that is not seen.
+   * @param nearness - 1/d, 0 for the sky [1/m].
    */
-  pathThrough(front: Float, behind: Float, transmittance: Float): Float {
-    const before = behind.add(1).mul(transmittance.oneMinus()).toConst() as Float
-    const after = front.add(1).mul(transmittance).toConst() as Float
-    return front.mul(before).add(behind.mul(after)).div(before.add(after))
+  rarityTo(nearness: Float, least: Float): Float {
+    const rare = nearness.mul(this.#freePath).toConst() as Float
+    return rare.mul(rare).add(least).toConst()
+  }
+
+  /** Distance up to which the air has a depth [m]. */
+  #distanceAt(depth: Float, least: Float): Float {
+    const rarity = rarityAt(depth)
+    return rarity.sub(least).max(rarity.mul(LEAST_LEFT)).inverseSqrt().mul(this.#freePath)
+  }
+
+  /**
+   * 1/τ² of a foreground, through which a part passes of what is behind: each has its part of the light that is seen.
+   *
+   * @param front - 1/τ² up to the foreground.
+   * @param behind - That up to what is behind it; the greatest where that is not seen.
+   */
+  rarityThrough(front: Float, behind: Float, transmittance: Float): Float {
+    const shown = mix(shownOf(front), shownOf(behind), transmittance).toConst()
+    return shown.mul(shown).reciprocal().sub(1).max(LEAST_RARITY)
+  }
+
+  /** Mean of the grid's pixels around a place in the picture, to be read once for it. */
+  meanAt(at: Vec2): Mean {
+    const place = at.mul(this.#scale).add(this.#offset).toConst() as Vec2
+    return { place, mean: sampleLevel0(this.#texels, place).toConst() }
   }
 
   /**
    * Light that a pixel loses, as {@link LostLight} has it.
    *
-   * @param at - Its place in the picture.
+   * @param around - Mean around it.
    * @param seen - Its air.
    * @param tolerance - Octaves by which its depth may be off: it is as near to those around as that allows. Null is none.
-   * @param lit - Light of its air that is seen, given a factor on the distance of what is seen, and the distance up to which
-   *   light is asked for [m]. Called in a branch.
+   * @param lit - Light of its air up to a distance [m]. Called in a branch.
    */
   read(
-    at: Vec2,
-    { path, thinning }: SeenAir,
+    { place: middle, mean }: Mean,
+    { rarity, least }: SeenAir,
     tolerance: Float | null,
-    lit: (nearer: Float, most: Float) => Vec3
+    lit: (distance: Float) => Vec3
   ): Vec3 {
-    const middle = at.mul(this.#scale).add(this.#offset).toConst()
-    const mean = sampleLevel0(this.#texels, middle).toConst()
-    const own = log2(path.max(MIN_PATH)).toConst() as Float
-    const part = shownOf(path).toVar()
-    const shownAt = (depth: Float): Float => shownOf(depth.exp2().toConst())
+    const own = depthOf(rarity)
     const moved = (depth: Float): Float =>
       tolerance ? depth.sub(own).clamp(tolerance.negate(), tolerance).toConst() : float(0)
-    if (tolerance) {
-      If(tolerance.greaterThan(0), () => {
-        // The tangent: it moves little.
-        part.addAssign(part.mul(part.oneMinus()).mul(moved(mean.w).mul(Math.LN2)))
-      })
-    }
+    const known = shownOf(rarity)
+    // The tangent: it moves little.
+    const slope = known.mul(known).oneMinus().mul(Math.LN2)
+    const part = tolerance ? known.mul(slope.mul(moved(mean.w)).add(1)) : known
     const lost = mean.rgb.mul(part.div(LIGHT_SCALE)).toVar() as Vec3
     const isLit = mean.w.sub(LIT_DEPTH).abs().lessThan(NEAR_MEAN)
     If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN).and(isLit.not()), () => {
       const size = this.#gridSize
-      const place = middle
-        .div(this.#texelSize)
-        .sub(1 - ROUNDING)
-        .toConst() as Vec2
+      const place = middle.div(this.#texelSize).sub(1).toConst() as Vec2
       const isSteep = mean.w.lessThan(STEEP_LIMIT)
       const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
       // Steps of a depth show where the nearest to it counts for more than others.
       const similar = (tolerance ?? float(0)).mul(2).max(SIMILAR).toConst()
       const even = similar.mul(similar).toConst()
-      const known = shownAt(own)
       // Light, and depth.
       const sums = vec4(0).toVar()
       const weights = float(0).toVar()
@@ -323,7 +348,7 @@ export class LostLightGrid {
         const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
         const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
         const other = sampleLevel0(this.#texels, at).toConst()
-        const light = log2(shownAt(other.w).div(known))
+        const light = rarity.add(1).div(rarityAt(other.w).add(1)).log2().mul(0.5)
         const apart = other.w.sub(own).abs().min(DISTINCT).max(light.abs()).toConst()
         const near = apart.mul(apart).add(even).reciprocal().toConst()
         // Else what is beside clouds, whose depths are rough, has a part of those that are far from its own.
@@ -332,10 +357,13 @@ export class LostLightGrid {
         weights.addAssign(weight)
       })
       sums.divAssign(weights)
-      const farther = sums.w.sub(own).add(2 * SAME_DEPTH)
-      const limit = this.#distanceAt(sums.w.add(farther.max(0)).exp2(), thinning)
-      const most = farther.lessThan(SAME_DEPTH).select(limit, FAR) as Float
-      lost.assign(lit(moved(sums.w).exp2(), most).mul(sums.rgb))
+      const farther = sums.w
+        .sub(own)
+        .add(2 * SAME_DEPTH)
+        .toConst()
+      const most = farther.lessThan(SAME_DEPTH).select(sums.w.add(farther.max(0)), LIT_DEPTH)
+      const depth = own.add(moved(sums.w)).min(most).toConst() as Float
+      lost.assign(lit(this.#distanceAt(depth, least)).mul(sums.rgb))
     })
     return lost
   }

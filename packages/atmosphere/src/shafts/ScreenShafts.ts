@@ -1,5 +1,5 @@
 import { Vector2, type OrthographicCamera } from 'three'
-import { Fn, If, bool, float, screenUV, uv, vec3 } from 'three/tsl'
+import { Fn, If, bool, float, mix, screenUV, uv, vec3 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
 import { unclampedSRGB } from '../air/tsl/color'
 import { densities, extinction } from '../air/cpu/medium'
@@ -13,8 +13,15 @@ import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
-import { LostLightGrid, THIN_HEIGHT, type LostLight, type SeenAir } from './LostLightGrid'
-import { seenLight, type SeenForeground } from './tsl/seenLight'
+import {
+  LostLightGrid,
+  hasForeground,
+  rarityAt,
+  THIN_HEIGHT,
+  type LostLight,
+  type Mean,
+  type SeenAir
+} from './LostLightGrid'
 import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf } from './tsl/without'
 import { DepthRays } from '../view/DepthRays'
@@ -23,13 +30,21 @@ import { SKY_DISTANCE, type SkyLayer } from '../view/SkyLayer'
 /** Transmittance below which a foreground layer hides what is behind it. Greater: shafts end at thin clouds (*Below a broken deck*). */
 const MIN_TRANSMITTANCE = 0.01
 
+/** 1/τ² of what is not seen. */
+const UNSEEN_RARITY = 1e14
+
+/** log₂ of a distance that is beyond all. */
+const FAR_OCTAVES = 40
+
 /** Transmittance from which on a foreground is not seen. */
 const CLEAR = 0.99
 
-/** Air and foreground of a pixel, and octaves by which its distance may be off. */
+/** Air of a pixel. */
 interface Seen extends SeenAir {
-  readonly front?: SeenForeground
+  /** Octaves by which its depth may be off. */
   readonly tolerance: Float | null
+  /** Foreground: log₂ of its distance [m], and the part of the light that passes it. */
+  readonly front?: { octaves: Float; passes: Float }
 }
 
 /** End of a view ray. */
@@ -37,10 +52,12 @@ interface RayEnd extends Pick<ShaftRay, 'cosView' | 'distance'> {
   /** Displacement in the mapped space of what gives the ray's direction [m], and the reciprocal of its length. */
   readonly offset: Vec3
   readonly inverse: Float
+  /** Reciprocal of the distance; 0 for the sky [1/m]. */
+  readonly nearness: Float
 }
 
-/** Optical path of rays that the planet's ground ends, over what it is without: near the horizon both are as long. Nearer to 1: light of the ground's air in the sky beside it. */
-const GROUND_PATH = 0.25
+/** 1/τ² of rays that the planet's ground ends, over what it is without: near the horizon both are as long. Nearer to 1: light of the ground's air in the sky beside it. */
+const GROUND_RARITY = 16
 
 const _size = new Vector2()
 
@@ -138,14 +155,9 @@ export class ScreenShafts implements ScreenShadows {
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
     const at = this.#place
-    const seen = this.#seenAt(at, end, true, transmittance)
-    const { front, tolerance } = seen
-    const lost = this.grid.read(at, seen, tolerance, (nearer, most) => {
-      const ray = this.#rayTo(end)
-      front?.distance.assign(front.distance.mul(nearer).min(most))
-      const to = ray.distance.min(most).toConst()
-      return seenLight(to, front, this.#lightOn(ray), 1 - CLEAR).seen
-    })
+    const around = this.grid.meanAt(at)
+    const seen = this.#seenAt(at, end, around, transmittance)
+    const lost = this.grid.read(around, seen, seen.tolerance, this.#lightOn(this.#rayTo(end)))
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -168,53 +180,57 @@ export class ScreenShafts implements ScreenShadows {
     return left
   }
 
-  /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. */
-  #seenAt(
-    at: Vec2,
-    end: Pick<RayEnd, 'distance' | 'cosView'>,
-    isRough: boolean,
-    transmittance?: Float
-  ): Seen {
+  /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. With the mean `around` it, roughly. */
+  #seenAt(at: Vec2, end: RayEnd, around?: Mean, transmittance?: Float): Seen {
     const { foreground, grid } = this
-    const { distance: to, cosView } = end
-    const thinning = grid.thinningOn(cosView)
-    const path = this.#pathOf(end, thinning).toVar()
-    if (foreground === undefined) return { path, thinning, tolerance: null }
+    const least = grid.leastRarity(end.cosView)
+    const whole = this.#rarityOf(end, least)
+    if (foreground === undefined) return { rarity: whole, least, tolerance: null }
     const passes = transmittance ?? foreground.transmittanceAt(at)
     const isSeen = passes.lessThan(CLEAR).toConst()
-    const distance = to.toVar()
-    const isBehind = this.#isForward.oneMinus().toConst()
-    path.mulAssign(isBehind)
+    const octaves = float(FAR_OCTAVES).toVar()
+    const rarity = whole.add(this.#isForward.mul(UNSEEN_RARITY)).toVar()
     If(isSeen, () => {
-      distance.assign(to.min(foreground.distanceAt(at, isRough)))
-      path.assign(grid.pathThrough(grid.pathTo(distance, thinning), path, passes))
+      const look = (): void => {
+        octaves.assign(foreground.octavesAt(at, around !== undefined))
+        const nearness = octaves.negate().exp2().max(end.nearness)
+        rarity.assign(grid.rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
+      }
+      if (around === undefined) look()
+      else {
+        // A pixel in the midst of clouds need not be looked at.
+        If(hasForeground(around, rarity, passes), () => {
+          rarity.assign(rarityAt(around.mean.w))
+        }).Else(look)
+      }
     })
-    const behind = passes.mul(isBehind).toConst()
-    const front = { distance, before: passes.oneMinus().toConst(), behind }
-    return { path, thinning, front, tolerance: isSeen.select(foreground.tolerance, 0).toConst() }
+    const tolerance = isSeen.select(foreground.tolerance, 0).toConst() as Float
+    return { rarity, least, tolerance, front: { octaves, passes } }
   }
 
-  /** Optical path to the end of a ray. Ground of the planet before which nothing is drawn is told from the sky beside it. */
-  #pathOf({ distance }: Pick<RayEnd, 'distance'>, thinning: Float): Float {
+  /** 1/τ² up to the end of a ray. Ground of the planet before which nothing is drawn is told from the sky beside it. */
+  #rarityOf({ distance, nearness }: RayEnd, least: Float): Float {
     // `distanceOf` has no other ray end there.
     const isGround = distance.equal(SKY_DISTANCE) as Bool
-    return this.grid.pathTo(distance, thinning).mul(isGround.select(GROUND_PATH, 1))
+    return this.grid.rarityTo(nearness, least).mul(isGround.select(GROUND_RARITY, 1))
   }
 
   /** Light that the ray of a pixel of the grid loses. */
   #march(renderer: Renderer, at: Vec2, pixel: Vec2): LostLight {
     const { view, shadowedAir, steps } = this.#shafts
-    const ray = this.#rayTo(this.#endIn(renderer, at))
+    const end = this.#endIn(renderer, at)
+    const ray = this.#rayTo(end)
     const { distance } = ray
-    const { front, path, thinning } = this.#seenAt(at, ray, false)
+    const { front, rarity, least } = this.#seenAt(at, end)
     const { isOrthographicCamera } = this.#shafts.camera as OrthographicCamera
     const start = isOrthographicCamera
       ? view.toMapped(vec3(this.#rays.position(renderer, at, float(0.5)).xy, 0))
       : undefined
     let seen: ShaftRay = { ...ray, start }
     if (front !== undefined) {
-      const { behind, distance: nearest } = front
-      const before = front.before.add(behind).toConst()
+      const nearest = front.octaves.exp2().min(distance).toConst() as Float
+      const behind = front.passes.mul(this.#isForward.oneMinus()).toConst() as Float
+      const before = front.passes.oneMinus().add(behind).toConst() as Float
       seen = {
         ...seen,
         distance: behind.greaterThan(MIN_TRANSMITTANCE).select(distance, nearest).toConst(),
@@ -222,9 +238,8 @@ export class ScreenShafts implements ScreenShadows {
       }
     }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
-    const { all, seen: lit } = seenLight(distance, front, this.#lightOn(ray))
-    const whole = this.#pathOf(ray, thinning)
-    return { lost: this.#color(lost), lit, all, whole, path, thinning }
+    const whole = this.#rarityOf(end, least)
+    return { lost: this.#color(lost), lit: this.#lightOn(ray), whole, rarity, least }
   }
 
   /** End of a view ray on what was drawn; else beyond the air, or behind the planet's ground. */
@@ -243,10 +258,11 @@ export class ScreenShafts implements ScreenShadows {
     const cosView = offset.dot(view.up).mul(inverse).toConst() as Float
     const beyond = distanceOf({ hitsGround: cosView.lessThan(view.viewpoint.cosHorizon) })
     const distance = isSky.select(beyond, square.mul(inverse)).toConst() as Float
-    return { offset, inverse, cosView, distance }
+    const nearness = isSky.select(0, inverse).toConst() as Float
+    return { offset, inverse, nearness, cosView, distance }
   }
 
-  #rayTo({ offset, inverse, cosView, distance }: RayEnd): ShaftRay {
+  #rayTo({ offset, inverse, cosView, distance }: Omit<RayEnd, 'nearness'>): ShaftRay {
     const direction = offset.mul(inverse).toConst() as Vec3
     const cosViewLight = direction.dot(this.#shafts.view.lightDirection).toConst() as Float
     return { direction, cosView: cosView.clamp(-1, 1).toConst(), cosViewLight, distance }
@@ -258,9 +274,9 @@ export class ScreenShafts implements ScreenShadows {
     return unclampedSRGB(air.uniforms, light.mul(source.irradiance)).div(this.#gain).toConst()
   }
 
-  /** Light of the air on a ray up to a distance without shadows, as the grid keeps it. */
+  /** Light of the air on a ray without shadows up to a distance, or its end, as the grid keeps it. */
   #lightOn(ray: ShaftRay): (distance: Float) => Vec3 {
-    return distance => this.#litAir({ ...ray, distance })
+    return distance => this.#litAir({ ...ray, distance: ray.distance.min(distance).toConst() })
   }
 
   #litAir(ray: ShaftRay): Vec3 {
@@ -268,12 +284,13 @@ export class ScreenShafts implements ScreenShadows {
     const { air, volume, viewpoint } = this.#shafts.view
     const limits = rayLimits(viewpoint, cosView)
     const at = [cosView, cosViewLight, limits, distance] as const
-    const { radiance } = sampleVolume(air.uniforms, volume, viewpoint, ...at)
+    const { radiance, depth } = sampleVolume(air.uniforms, volume, viewpoint, ...at)
     const light = radiance.toVar()
     If(this.#hasMedia.greaterThan(0), () => {
       const media = this.#shafts.shadowedAir.mediaOn({ view: this.#shafts.view, ...ray })
-      for (const { transmittance, singleScattered } of media) {
-        light.assign(light.mul(transmittance).add(singleScattered ?? 0))
+      for (const { transmittance, ahead, singleScattered } of media) {
+        const left = ahead ? mix(transmittance, 1, ahead(depth)) : transmittance
+        light.assign(light.mul(left).add(singleScattered ?? 0))
       }
     })
     return this.#color(light)

@@ -1,4 +1,12 @@
-import { MathUtils, Matrix3, Matrix4, RGFormat, RepeatWrapping, Vector3 } from 'three'
+import {
+  MathUtils,
+  Matrix3,
+  Matrix4,
+  NearestFilter,
+  RedFormat,
+  RepeatWrapping,
+  Vector3
+} from 'three'
 import type { RenderTarget, DepthTexture } from 'three'
 import { texture } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
@@ -8,8 +16,8 @@ import type { ShadowMap } from './shadowMaps'
 import { occluderAngle, type DepthStorage, type ShadowMapNodes } from './tsl/occluderAngle'
 import { matrix4, number, vector2, vector3, vector4 } from '../uniforms'
 
-/** Part of the greatest distance up to which columns are even. */
-const EVEN_PART = 1e-3
+/** Greatest distance over that up to which columns are even. */
+const GROWTH = 1000
 
 const _axes = new Matrix4()
 const _linear = new Matrix3()
@@ -36,11 +44,11 @@ export class SunPolarMap {
   readonly frame = {
     across: vector3(),
     along: vector3(),
-    evenDistance: number(1),
+    perMeter: number(1),
     logScale: number(1),
     logOffset: number(),
-    columns: number(1),
-    rows: number(1)
+    size: vector2(),
+    texelSize: vector2()
   }
   /** Greatest ρ of a shadow map [m]; 0 without maps. */
   readonly maximumRho = number()
@@ -51,9 +59,9 @@ export class SunPolarMap {
   #pass: FragmentPass | null = null
 
   constructor() {
-    this.target = tableTarget('Welkin.LightShafts', 1, 1)
+    this.target = tableTarget('Welkin.LightShafts', 1, 1, 1, NearestFilter)
     const [map] = this.target.textures
-    map.format = RGFormat
+    map.format = RedFormat
     map.wrapT = RepeatWrapping
     this.map = texture(map)
   }
@@ -73,8 +81,8 @@ export class SunPolarMap {
     this.maximumRho.value = 0
     // Without maps, too: what has drawn with the texture in this frame must find it at its end.
     this.target.setSize(columns, rows)
-    this.frame.columns.value = columns
-    this.frame.rows.value = rows
+    this.frame.size.value.set(columns, rows)
+    this.frame.texelSize.value.set(1 / columns, 1 / rows)
     if (maps.length === 0) return
     this.#setSources(renderer, maps)
     this.#setFrame(view, space, maps)
@@ -108,7 +116,7 @@ export class SunPolarMap {
     space: SphericalSpace,
     maps: readonly ShadowMap[]
   ): void {
-    const { across, along, logScale, logOffset } = this.frame
+    const { across, along, perMeter, logScale, logOffset, size } = this.frame
     across.value.crossVectors(up, lightDirection)
     if (across.value.lengthSq() < 1e-12) across.value.set(up.z, up.x, up.y).cross(lightDirection)
     across.value.normalize()
@@ -140,12 +148,11 @@ export class SunPolarMap {
       const e = _toMap.elements
       source.metersPerDepth.value = 1 / lightDirection.dot(_end.set(e[2], e[6], e[10]))
     })
-    const even = EVEN_PART * greatest
-    const last = Math.log1p(greatest / even)
-    const first = Math.min(Math.log1p(least / even), last - 1e-3)
-    this.frame.evenDistance.value = even
-    logScale.value = 1 / (last - first)
-    logOffset.value = -first / (last - first)
+    perMeter.value = GROWTH / greatest
+    const last = Math.log2(1 + GROWTH)
+    const first = Math.min(Math.log2(1 + least * perMeter.value), last - 1e-3)
+    logScale.value = (size.value.x - 1) / (last - first)
+    logOffset.value = -first * logScale.value
     this.maximumRho.value = greatest
     this.intensity.value = maps[0].intensity
   }

@@ -26,7 +26,7 @@ export const qualities = {
   medium: {
     rows: 960,
     columns: 240,
-    spacing: 7,
+    spacing: 8,
     groups: 3,
     samples: 3,
     inFog: 32

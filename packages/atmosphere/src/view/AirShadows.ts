@@ -15,12 +15,12 @@ export interface ForegroundLayer {
   /** Octaves by which its rough distance may be off: half a step of it, and more. */
   readonly tolerance: number
   /**
-   * Its distance [m].
+   * log₂ of its distance [m].
    *
    * @param at - Place in the picture, as texture coordinates.
    * @param isRough - True for what takes one read: it may be kept in steps.
    */
-  distanceAt(at: Vec2, isRough: boolean): Float
+  octavesAt(at: Vec2, isRough: boolean): Float
   /** Part of the light from behind that passes, in [0, 1]. */
   transmittanceAt(at: Vec2): Float
 }

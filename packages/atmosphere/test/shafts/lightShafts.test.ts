@@ -218,7 +218,7 @@ describe('what is added to light shafts', () => {
         return true
       },
       tolerance: 0,
-      distanceAt: () => float(1),
+      octavesAt: () => float(1),
       transmittanceAt: () => float(1)
     }
     for (let i = 0; i < 3; i++) {

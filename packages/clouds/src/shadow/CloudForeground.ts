@@ -1,5 +1,4 @@
 import type { ForegroundLayer } from '@welkin/atmosphere'
-import { exp2 } from 'three/tsl'
 import type { CloudsNode } from '../march/CloudsNode'
 import { DISTANCE_STEP, unpack } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
@@ -20,18 +19,17 @@ export class CloudForeground implements ForegroundLayer {
     return !this.isRemoved && !this.#clouds.isDisposed
   }
 
-  distanceAt(at: Vec2, isRough: boolean): Float {
+  octavesAt(at: Vec2, isRough: boolean): Float {
     const { accumulated, cells, viewRays } = this.#clouds.passes
     const { frame } = viewRays
     const read = ({ distances }: CloudTargets, place: Vec2): Vec4 =>
       distances.sample(place).level(0).toConst()
     const kept = unpack(read(accumulated, at)).x
-    if (isRough) return exp2(kept).toConst()
+    if (isRough) return kept.toConst()
     // History's distances are bytes, of a cell each, whose steps would show in haze: means of cells around are smooth.
     const place = at.mul(frame.size).sub(0.5).sub(frame.jitter).div(frame.block).add(1)
     const smooth = read(cells, place.div(frame.marchedSize.add(1)).toConst()).x
-    const near = smooth.clamp(kept.sub(this.tolerance), kept.add(this.tolerance))
-    return exp2(near).toConst()
+    return smooth.clamp(kept.sub(this.tolerance), kept.add(this.tolerance)).toConst()
   }
 
   transmittanceAt(at: Vec2): Float {

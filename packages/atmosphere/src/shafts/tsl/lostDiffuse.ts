@@ -1,4 +1,4 @@
-import { vec4 } from 'three/tsl'
+import { float, vec4 } from 'three/tsl'
 import { diffuseMoments } from '../../diffuseLight/tsl/diffuseLight'
 import { applyMoments, momentBasis } from '../../diffuseLight/tsl/moments'
 import type { Air } from '../../scattering/tsl/ray'
@@ -17,8 +17,8 @@ interface DiffuseRay {
   readonly samples: Int
   /** Place of samples in their steps, in (0, 1). */
   readonly jitter: Float
-  /** Part of the diffuse light at a distance that is missing in the picture, by occluders; negative if there is more. */
-  readonly missingAt: (inAir: Float) => Vec4
+  /** Part of the diffuse light at a distance, for a stretch of the steps, that is missing in the picture, by occluders; negative if there is more. */
+  readonly missingAt: (inAir: Float, from: Float, width: Float) => Vec4
 }
 
 /**
@@ -40,8 +40,9 @@ export function lostDiffuse(air: Air, ray: DiffuseRay): Vec4 {
       .add(
         place.seenMie.mul(applyMoments(moments, basis, uniforms.mieMoment1, uniforms.mieMoment2))
       )
-    const width = steps.slope(position).div(samples)
-    lost.addAssign(light.mul(missingAt(inAir)).mul(width))
+    const width = float(1).div(samples).toConst() as Float
+    const missing = missingAt(inAir, width.mul(float(index)), width)
+    lost.addAssign(light.mul(missing).mul(steps.slope(position).mul(width)))
   })
   return lost.div(RADIANCE_SCALE)
 }

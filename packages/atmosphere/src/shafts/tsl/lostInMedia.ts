@@ -1,4 +1,4 @@
-import { If, float, int, vec4 } from 'three/tsl'
+import { If, float, int, mix, vec4 } from 'three/tsl'
 import { loop, type Float, type Vec4 } from '../../tsl-types'
 import type { ShadowedMedium, SkyLayer } from '../../view/SkyLayer'
 import type { ShadowedAir, Shadows } from './shadowsAlong'
@@ -23,15 +23,22 @@ export const mediaIn = (
 export const isShadowed = (layer: SkyLayer): boolean =>
   'shadowed' in layer || layer.airDensity !== undefined
 
-/** Light of the air from a distance [m], as media such as fog leave it. */
-export const dimmedBy =
-  (media: readonly ShadowedMedium[]) =>
-  (light: Vec4, distance: Float): Vec4 =>
-    media.reduce<Vec4>(
-      (left, { front, transmittance }) =>
-        left.mul(distance.lessThan(front).select(1, transmittance)),
-      light
-    )
+/**
+ * Light of the air from an even stretch of a ray, as media such as fog leave it: what is in front of them stays.
+ *
+ * @param placeOf - Place on the ray of a distance [m], in the measure that the stretch is given in.
+ */
+export function dimmedBy(
+  media: readonly ShadowedMedium[],
+  placeOf: (distance: Float) => Float
+): (light: Vec4, from: Float, length: Float) => Vec4 {
+  const fronts = media.map(({ front }) => placeOf(front).toConst() as Float)
+  return (light, from, length) =>
+    media.reduce<Vec4>((left, { transmittance }, i) => {
+      const before = fronts[i].sub(from).div(length).clamp()
+      return left.mul(mix(transmittance, 1, before))
+    }, light)
+}
 
 /**
  * Light that media in the air lose, such as fog, for unit irradiance of the source [1/sr]: of light scattered once the dark

@@ -53,7 +53,7 @@ export function lostInSlice(
     const mediaTo = (distance: Float): readonly ShadowedMedium[] =>
       shadowedAir.mediaOn({ ...shaftRay, view, distance })
     const media = mediaTo(to)
-    const past = dimmedBy(media)
+    const past = dimmedBy(media, far => far)
     const sums = vec4(0).toVar()
     loop('sliceSample', int(samples), index => {
       const part = float(index).add(jitter).div(samples).toConst()
@@ -67,7 +67,11 @@ export function lostInSlice(
       const distance = from.add(length.mul(centre)).toConst() as Float
       const once = scatteredOnce(air, airAt, cosViewLight)(distance.sub(limits.start))
       const part = sum.div(samples).toConst()
-      lost.assign(past(once, distance).mul(length.mul(part)))
+      const darkLength = length.mul(part).toConst() as Float
+      // The dark part as one stretch: that of the steps, not of the places in them.
+      const half = sum.sub(1).mul(0.5).add(jitter).mul(length).div(samples)
+      const light = past(once, distance.sub(half), darkLength)
+      lost.assign(light.mul(darkLength))
       // Of fog what the slice adds to the light before it.
       const before = media.length > 0 ? mediaTo(from) : []
       const fog = media.reduce<Vec4>((light, { singleScattered: added, transmittance }, i) => {
@@ -78,8 +82,8 @@ export function lostInSlice(
       // As long as an even stretch of the same variance.
       const variance = sums.z.div(sum).sub(centre.mul(centre))
       const width = samples.mul(samples).mul(12).reciprocal()
-      const half = variance.add(width).max(0).mul(3).sqrt().toConst()
-      const edges = vec2(centre.sub(half).max(0), centre.add(half).min(1))
+      const aside = variance.add(width).max(0).mul(3).sqrt().toConst()
+      const edges = vec2(centre.sub(aside).max(0), centre.add(aside).min(1))
       dark.assign(edges.mul(length).add(from))
     })
     if (missingAt === null) return
@@ -93,7 +97,7 @@ export function lostInSlice(
       cosViewLight,
       samples: int(1),
       jitter: float(0.5),
-      missingAt: () => past(missing, middle)
+      missingAt: () => past(missing, from, length as Float)
     }
     lost.addAssign(lostDiffuse(air, diffuse))
     const before = media.length > 0 ? mediaTo(from) : []

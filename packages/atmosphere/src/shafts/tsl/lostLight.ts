@@ -48,6 +48,8 @@ interface March {
   readonly darkAt: (position: Float, isMapped: boolean) => Float
   /** Light scattered once at a distance in the air, if nothing casts shadows [1/(m sr)]. */
   readonly scatteredAt: (inAir: Float) => Vec4
+  /** Light of a stretch of the steps, as media such as fog leave it. */
+  readonly past: (light: Vec4, from: Float, width: Float) => Vec4
   readonly jitter: Float
 }
 
@@ -93,12 +95,12 @@ export function lostLight(
       : shadowsAlong(view, shadowedAir, shaftRay, () => polar, jitter)
     const fromEye = (inAir: Float): Float => inAir.add(limits.start).toConst()
     const media = shadowedAir.mediaOn({ ...shaftRay, view })
-    const past = dimmedBy(media)
-    const once = scatteredOnce(air, airAt, cosViewLight)
+    const past = dimmedBy(media, far => steps.partAt(far.sub(limits.start)))
     const march: March = {
       steps,
       darkAt: (position, isMapped) => darkAt(fromEye(steps.distance(position)), isMapped),
-      scatteredAt: inAir => past(once(inAir), fromEye(inAir)),
+      scatteredAt: scatteredOnce(air, airAt, cosViewLight),
+      past,
       jitter
     }
     if (media.length > 0) {
@@ -139,7 +141,8 @@ export function lostLight(
       cosViewLight,
       samples: places,
       jitter: jitter.lessThan(0.5).select(0.25, 0.75) as Float,
-      missingAt: (inAir: Float) => past(missingAt(fromEye(inAir)), fromEye(inAir))
+      missingAt: (inAir: Float, from: Float, width: Float) =>
+        past(missingAt(fromEye(inAir)), from, width)
     }
     lost.addAssign(lostDiffuse(air, diffuse))
   })
@@ -183,7 +186,7 @@ export function scatteredOnce(
  * @param start - Light of the ray before it, as a part of all.
  */
 function lostInGroup(
-  { steps, darkAt, scatteredAt, jitter }: March,
+  { steps, darkAt, scatteredAt, past, jitter }: March,
   { width, groups, samples, isMapped }: Stretch,
   start: Float
 ): Vec4 {
@@ -200,7 +203,11 @@ function lostInGroup(
   If(dark.greaterThan(0), () => {
     const centre = sum.div(dark).toConst() as Float
     const inAir = steps.distance(centre).toConst() as Float
-    lost.assign(scatteredAt(inAir).mul(steps.slope(centre).mul(dark.mul(perSample))))
+    // The dark part as one stretch: that of the steps, not of the places in them.
+    const darkWidth = dark.mul(perSample).toConst() as Float
+    const from = centre.sub(dark.sub(1).mul(0.5).add(jitter).mul(perSample))
+    const light = past(scatteredAt(inAir), from, darkWidth)
+    lost.assign(light.mul(steps.slope(centre).mul(darkWidth)))
   })
   return lost
 }

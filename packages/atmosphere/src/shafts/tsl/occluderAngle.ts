@@ -1,22 +1,17 @@
 import type { DepthTexture, Matrix4, Vector2, Vector4 } from 'three'
-import {
-  Fn,
-  If,
-  atan,
-  float,
-  ivec2,
-  max,
-  min,
-  mix,
-  step,
-  textureLoad,
-  uv,
-  vec2,
-  vec4
-} from 'three/tsl'
+import { Fn, If, float, step, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode, UniformNode } from 'three/webgpu'
-import { loop, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
-import { lightRayAt, type PolarFrame } from './polarMap'
+import {
+  gatherRed,
+  loop,
+  mixed,
+  type Bool,
+  type Float,
+  type Vec2,
+  type Vec3,
+  type Vec4
+} from '../../tsl-types'
+import { lightRayAt, MOST_COTANGENT, type PolarFrame } from './polarMap'
 
 /** A shadow map of a light as the shader that merges them sees it. */
 export interface ShadowMapNodes {
@@ -69,9 +64,6 @@ function comparedDepth(depth: TextureNode, at: Vec2, { isReversed }: DepthStorag
 const isEmpty = (stored: Float, { isReversed }: DepthStorage): Bool =>
   isReversed ? stored.lessThanEqual(EMPTY) : stored.greaterThanEqual(1 - EMPTY)
 
-const depthIn = (depth: TextureNode, size: Vec2, texel: Vec2): Float =>
-  (textureLoad(depth, ivec2(texel.clamp(vec2(0), size.sub(1)))) as unknown as Vec4).r.toConst()
-
 /**
  * Depth between the four texels next to a place, so that slopes in shadow at a flat angle cast no shadows in
  * steps; of the nearest one where a caster ends, which would shrink.
@@ -80,10 +72,12 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: De
   const place = at.mul(size).sub(0.5).toConst()
   const first = place.floor().toConst()
   const part = place.sub(first).toConst()
-  const read = (x: number, y: number): Float => depthIn(depth, size, first.add(vec2(x, y)))
-  const [a, b, c, d] = [read(0, 0), read(1, 0), read(0, 1), read(1, 1)]
-  const among = (weight: Vec2): Float => mix(mix(a, b, weight.x), mix(c, d, weight.x), weight.y)
-  const farthest = isReversed ? min(a, b, c, d) : max(a, b, c, d)
+  const four = gatherRed(depth, first.add(1).div(size) as Vec2)
+  const among = (weight: Vec2): Float => mixed(four, weight)
+  const farthest = [four.y, four.z, four.w].reduce<Float>(
+    (far, each) => (isReversed ? far.min(each) : far.max(each)),
+    four.x
+  )
   return isEmpty(farthest, { isReversed, isCompared: false })
     .select(among(step(0.5, part)), among(part))
     .toConst()
@@ -94,7 +88,7 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: De
  * occluder on it.
  *
  * @param maps - Shadow maps from the finest on, as cascades are.
- * @returns Angle θ of the occluder from the source of light, π where there is none; and π − θ [rad].
+ * @returns Cotangent of the occluder's angle from the source of light; the least where there is none.
  */
 export function occluderAngle(
   frame: PolarFrame,
@@ -113,7 +107,7 @@ export function occluderAngle(
         })
       })
     }
-    return vec4(atan(distance, nearest), atan(distance, nearest.negate()), 0, 0)
+    return vec4(nearest.div(distance).clamp(-MOST_COTANGENT, MOST_COTANGENT), 0, 0, 0)
   })()
 }
 

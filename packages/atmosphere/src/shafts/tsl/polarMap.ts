@@ -1,6 +1,14 @@
-import { atan, mix, vec2 } from 'three/tsl'
+import { atan, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import { loadTexel, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
+import { gatherRed, mixed, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
+
+/** Columns and rows over which {@link softDark} is spread besides, about as far: without, shadows of hills on clouds far away have edges in steps (*Fog from above*). */
+const ASIDE_COLUMNS = 1
+const ASIDE_ROWS = 5
+
+/** Greatest cotangent of an angle that the map keeps, and the least of a view ray, which is greater than that of no occluder: half floats hold a little more. */
+export const MOST_COTANGENT = 6e4
+const LEAST_SEEN = -5e4
 
 /** Factor on noise for numbers that are not alike: 4√5. */
 const NOISE_STRIDE = 8.944
@@ -15,27 +23,24 @@ export interface PolarFrame {
   readonly across: Vec3
   /** Direction of φ = π/2. */
   readonly along: Vec3
-  /** Distance ρ₀ up to which columns are even; beyond, they grow with ρ [m]. */
-  readonly evenDistance: Float
-  /** Factor and summand that turn ln(1 + ρ/ρ₀) into a position among columns, in [0, 1] from first to last. */
+  /** Reciprocal of the distance ρ₀ up to which columns are even; beyond, they grow with ρ [1/m]. */
+  readonly perMeter: Float
+  /** Factor and summand that turn log₂(1 + ρ/ρ₀) into a place among columns. */
   readonly logScale: Float
   readonly logOffset: Float
-  /** Number of columns, and of rows. */
-  readonly columns: Float
-  readonly rows: Float
+  /** Number of columns, and of rows; and their reciprocals. */
+  readonly size: Vec2
+  readonly texelSize: Vec2
 }
 
 /** A view ray in a {@link PolarFrame}. */
 export interface PolarRay {
   /** sin θ, which turns a distance along the ray into ρ. */
   sinViewLight: Float
-  /** θ, or π − θ where the ray goes away from the light: half floats are finest near nought [rad]. */
-  angle: Float
-  /** True if the ray goes towards the light. */
-  isTowards: Bool
-  /** The two rows whose middles φ is between, and its place between them. */
-  rows: readonly [Float, Float]
-  betweenRows: Float
+  /** cot θ: occluders of a greater one are nearer to the light. */
+  cotangent: Float
+  /** Place of φ among rows, of which there are more beyond the last: whole numbers are middles of rows. */
+  row: Float
 }
 
 /**
@@ -43,7 +48,7 @@ export interface PolarRay {
  * @param cosViewLight - ν, direction against the source.
  */
 export function polarRay(
-  { across, along, rows }: PolarFrame,
+  { across, along, size }: PolarFrame,
   direction: Vec3,
   cosViewLight: Float
 ): PolarRay {
@@ -52,23 +57,18 @@ export function polarRay(
   // Not √(1 − ν²), which cancels near the source.
   const sinViewLight = x.mul(x).add(y.mul(y)).sqrt().max(1e-7).toConst() as Float
   const turns = atan(y, x).mul(1 / (2 * Math.PI))
-  const place = turns.add(1).mul(rows).sub(0.5).toConst() as Float
-  const first = place.floor().toConst() as Float
   return {
     sinViewLight,
-    angle: atan(sinViewLight, cosViewLight.abs()).toConst(),
-    isTowards: cosViewLight.greaterThan(0).toConst(),
-    rows: [first.mod(rows).toConst(), first.add(1).mod(rows).toConst()],
-    betweenRows: place.sub(first).toConst()
+    cotangent: cosViewLight.div(sinViewLight).max(LEAST_SEEN).toConst() as Float,
+    row: turns.add(1).mul(size.y).sub(0.5).toConst() as Float
   }
 }
 
 /** A texel's ray of light: the displacement from the camera of its point nearest to the camera, and ρ [m]. */
 export function lightRayAt(frame: PolarFrame, uv: Vec2): { offset: Vec3; distance: Float } {
-  const { across, along, evenDistance, logScale, logOffset, columns } = frame
-  const position = uv.x.mul(columns).sub(0.5).div(columns.sub(1))
-  const grown = position.sub(logOffset).div(logScale).exp().sub(1)
-  const distance = grown.max(1e-3).mul(evenDistance).toConst() as Float
+  const { across, along, perMeter, logScale, logOffset, size } = frame
+  const grown = uv.x.mul(size.x).sub(0.5).sub(logOffset).div(logScale).exp2().sub(1)
+  const distance = grown.max(1e-3).div(perMeter).toConst() as Float
   const azimuth = uv.y.mul(2 * Math.PI).toConst()
   const offset = across.mul(azimuth.cos()).add(along.mul(azimuth.sin())).mul(distance)
   return { offset: offset.toConst(), distance }
@@ -80,9 +80,9 @@ export function lightRayAt(frame: PolarFrame, uv: Vec2): { offset: Vec3; distanc
  * @param distance - ρ ≥ 0 [m].
  */
 export function columnAt(frame: PolarFrame, distance: Float): Float {
-  const { evenDistance, logScale, logOffset, columns } = frame
-  const position = distance.div(evenDistance).add(1).log().mul(logScale).add(logOffset).clamp()
-  return position.mul(columns.sub(1))
+  const { perMeter, logScale, logOffset, size } = frame
+  const place = distance.mul(perMeter).add(1).log2().mul(logScale).add(logOffset)
+  return place.clamp(0, size.x.sub(1))
 }
 
 /**
@@ -90,7 +90,7 @@ export function columnAt(frame: PolarFrame, distance: Float): Float {
  * the light, between the four nearest rays. Each is compared: angles must not be mixed, or a shadow before the sky would be
  * displaced by up to a texel, the more the farther from the light one looks.
  *
- * @param map - θ of the first occluder, and π − θ, of rays of light [rad].
+ * @param map - cot θ of the first occluder of rays of light.
  * @param distance - Distance from the camera [m].
  */
 export function darkPart(
@@ -99,39 +99,32 @@ export function darkPart(
   ray: PolarRay,
   distance: Float
 ): Float {
-  const { sinViewLight, rows, betweenRows } = ray
-  const column = columnAt(frame, distance.mul(sinViewLight)).toConst() as Float
-  const first = column.floor().toConst() as Float
-  const columns = [first, first.add(1).min(frame.columns.sub(1)).toConst() as Float]
-  const dark = columns.map(x => {
-    const [here, next] = rows.map(y => isDark(map, ray, x, y))
-    return mix(here, next, betweenRows)
-  })
-  return mix(dark[0], dark[1], column.sub(first)).toConst()
+  return darkAt(map, frame, ray, vec2(columnAt(frame, distance.mul(ray.sinViewLight)), ray.row))
+}
+
+/** Dark part of the air between the four rays of light about a place among columns and rows. */
+function darkAt(map: TextureNode, frame: PolarFrame, { cotangent }: PolarRay, at: Vec2): Float {
+  const place = at.toConst()
+  const first = place.floor().toConst() as Vec2
+  // Not a step: loops about it have a variable of that name.
+  const nearer = gatherRed(map, first.add(1).mul(frame.texelSize)).sub(cotangent)
+  const four = nearer.sign().max(0).toConst()
+  return mixed(four as Vec4, place.sub(first).toConst())
 }
 
 /**
- * As {@link darkPart} in the mean, from one of the four rays: for what is read often, or has a history.
+ * As {@link darkPart}, from rays of light a little beside, by noise: edges become soft.
  *
  * @param noise - In [0, 1).
  */
-export function ditheredDark(
+export function softDark(
   map: TextureNode,
   frame: PolarFrame,
   ray: PolarRay,
   distance: Float,
   noise: Float
 ): Float {
-  const column = columnAt(frame, distance.mul(ray.sinViewLight))
-  // Noise of columns is apart from that of rows.
-  const x = column.add(noise.mul(NOISE_STRIDE).fract()).floor().min(frame.columns.sub(1))
-  const y = ray.betweenRows.greaterThan(noise).select(ray.rows[1], ray.rows[0])
-  return isDark(map, ray, x.toConst(), y.toConst()).toConst()
-}
-
-/** 1 if a view ray's place is dark by a ray of light, else 0. */
-function isDark(map: TextureNode, ray: PolarRay, x: Float, y: Float): Float {
-  const { angle, isTowards } = ray
-  const { x: occluder, y: behind } = loadTexel(map, vec2(x, y)).toConst()
-  return isTowards.select(angle.greaterThan(occluder), angle.lessThan(behind)).select(1, 0)
+  const aside = noise.mul(NOISE_STRIDE).fract().sub(0.5).mul(ASIDE_COLUMNS)
+  const column = columnAt(frame, distance.mul(ray.sinViewLight)).add(aside)
+  return darkAt(map, frame, ray, vec2(column, ray.row.add(noise.sub(0.5).mul(ASIDE_ROWS))))
 }

@@ -4,7 +4,7 @@ import type { Bool, Float, Vec3, Vec4 } from '../../tsl-types'
 import type { ShadowedMedium } from '../../view/SkyLayer'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 import type { AirPoint, AirShadow, AirViewRay } from '../AirOccluder'
-import { darkPart, polarRay, type ditheredDark, type PolarFrame, type PolarRay } from './polarMap'
+import { darkPart, softDark, polarRay, type PolarFrame, type PolarRay } from './polarMap'
 
 /** A view ray through media. */
 export type MediaRay = Omit<ShaftRay, 'seenFrom'> & { readonly view: ViewUniforms }
@@ -63,7 +63,7 @@ export function shadowsAlong(
   { direction, seenFrom, receiver }: Pick<ShaftRay, 'direction' | 'seenFrom' | 'receiver'>,
   polar: () => PolarRay,
   jitter: Float,
-  readMap: typeof ditheredDark = darkPart
+  readMap: typeof softDark = darkPart
 ): Shadows {
   const placeAt = (distance: Float): AirPoint => {
     const offset = direction.mul(distance).toConst() as Vec3
@@ -121,7 +121,7 @@ export function shadowAt(
   shadowedAir: ShadowedAir,
   ray: Omit<AirViewRay, 'view'>,
   distance: Float,
-  readMap?: typeof ditheredDark
+  readMap?: typeof softDark
 ): { dark: Float; missing: Vec4 | null } {
   const { frame, maximumRho } = shadowedAir
   const { direction, jitter } = ray
@@ -144,7 +144,8 @@ export function litAt(
 ): Float {
   const lit = float(1).toVar() as Float
   If(strength.greaterThan(0), () => {
-    lit.subAssign(shadowAt(view, shadowedAir, ray, distance).dark.mul(strength.min(1)))
+    const { dark } = shadowAt(view, shadowedAir, ray, distance, softDark)
+    lit.subAssign(dark.mul(strength.min(1)))
   })
   return lit
 }
