@@ -9,7 +9,7 @@ export const VIEWS = {
   village: { label: 'Village', position: [300, 34, 520], target: [330, 80, -1500] },
   shore: { label: 'Shore', position: [120, 2.5, -330], target: [60, 150, -3000] },
   slope: { label: 'From a slope', position: [1150, 330, 900], target: [-300, 60, -2200] },
-  above: { label: 'Above the clouds', position: [-900, 3100, 5200], target: [0, 1300, -4000] }
+  above: { label: 'Above the clouds', position: [-900, 3750, 5200], target: [0, 1700, -4000] }
 } satisfies Record<string, ValleyView>
 
 export type ValleyName = keyof typeof VIEWS
