@@ -84,7 +84,7 @@ const TWILIGHT = -20
 const SNOW_COMPENSATION = 0.6
 
 /** Brighter pictures of nights, or what the moon lights is black [stops], and elevation of the sun by which they are [degrees]. */
-const NIGHT_COMPENSATION = 0.3
+const NIGHT_COMPENSATION = 0.7
 const NIGHT = -10
 
 /** Turn of the sun after which the sky that the lake mirrors beside the picture is drawn anew [degrees]. */
@@ -111,12 +111,7 @@ export class Valley {
   readonly #glows = [milkyWay(), stars(), airglow()] as const
   readonly #lamps = new StreetLamps(doors())
   readonly #land = new Land(this.#falling, this.#lamps)
-  readonly #village = createVillage(
-    groundHeight,
-    VILLAGE,
-    this.#lamps,
-    this.#falling.water
-  )
+  readonly #village = createVillage(groundHeight, VILLAGE, this.#lamps, this.#falling.water)
   readonly #mirror: LakeMirror
   readonly #water
   readonly #node

@@ -36,7 +36,7 @@ import { VertexLitMaterial } from './VertexLitMaterial'
 
 const HOUSES = 46
 /** Luminances of the darkest and the brightest lit window [cd/m²], and luminous intensity of the lamp by the church [cd]. */
-const WINDOWS = [0.12, 1.2] as const
+const WINDOWS = [0.2, 2] as const
 const LAMP = 40
 /** Part of the windows that are lit. */
 const LIT = 0.42

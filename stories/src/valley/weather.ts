@@ -118,7 +118,13 @@ const fogForm: typeof deckForm = {
 
 /** Layers that `WeatherBlend` sets: cumulus, a deck over them or banks of fog, cirrus. */
 export const valleyLayers = [
-  { baseAltitude: 1500, topAltitude: 2700, coverage: 0, wind: { east: 6, north: 2 } },
+  {
+    baseAltitude: 1500,
+    topAltitude: 2700,
+    coverage: 0,
+    densityGrowth: 0.6, // bases are thin: dense ones are ruled before mountains
+    wind: { east: 6, north: 2 }
+  },
   {
     ...deckForm,
     coverage: 0,
@@ -233,7 +239,8 @@ export class WeatherBlend {
     shadow: boolean,
     falls: boolean
   ): void {
-    const { cumulus, cirrus, base, deckBase, deckDensity, deckRain, tall, rain, snow } = this.current
+    const { cumulus, cirrus, base, deckBase, deckDensity, deckRain, tall, rain, snow } =
+      this.current
     const rates = [rain * SHAFTS[0], rain * deckRain * SHAFTS[1] + snow, 0]
     // The deck and banks of fog are one layer: one goes before the other comes.
     const foggy = this.#fog(hasMist)
