@@ -84,7 +84,7 @@ const TWILIGHT = -20
 const SNOW_COMPENSATION = 0.6
 
 /** Brighter pictures of nights, or what the moon lights is black [stops], and elevation of the sun by which they are [degrees]. */
-const NIGHT_COMPENSATION = 0.7
+const NIGHT_COMPENSATION = 0.9
 const NIGHT = -10
 
 /** Turn of the sun after which the sky that the lake mirrors beside the picture is drawn anew [degrees]. */

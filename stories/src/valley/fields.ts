@@ -30,7 +30,7 @@ const STRAY = 0.012
 const VERGE = 0.011
 
 /** Part of a verge whose stalks snow does not cover. */
-const STALKS = 0.45
+const STALKS = 0.22
 
 /**
  * Fields in strips, with their furrows; grass in some, and on the verges between them. In alpha the part that snow does not cover.

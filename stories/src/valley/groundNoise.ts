@@ -2,11 +2,11 @@ import {
   DataTexture,
   LinearFilter,
   LinearMipmapLinearFilter,
+  MathUtils,
   RedFormat,
   RepeatWrapping,
   UnsignedByteType
 } from 'three'
-import { MathUtils } from 'three'
 
 /** Texels along an edge. */
 const SIZE = 256
