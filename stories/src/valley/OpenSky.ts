@@ -123,7 +123,7 @@ export class OpenSky {
    * Part of the sky that the ground sees, in [0, 1].
    *
    * @param right - Way on the ground from a pixel to the next [m].
-   * @param down - The same, downwards.
+   * @param down - Way to the pixel below [m].
    */
   sample(right: Node<'vec3'>, down: Node<'vec3'>): Node<'float'> {
     return Fn(() => {

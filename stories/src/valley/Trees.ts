@@ -29,7 +29,7 @@ const SNOWED_BARE = 0.6
 /** Cosines of the slopes of a crown of needles between which snow comes to lie: its branches hold it where a roof would not. */
 const NEEDLED = [-0.15, 0.6] as const
 
-/** The same of bare twigs: rime is on all sides. */
+/** Cosines of the slopes of bare twigs that rime covers: it is on all sides. */
 const TWIGGED = [-1.4, 0.6] as const
 
 const _place = new Vector3()

@@ -75,7 +75,7 @@ export function crops(
     )
   const verge = smoothstep(0.5 - 2 * VERGE, 0.5 - VERGE, border)
   const isCorn = chance.greaterThan(0.4).select(1, 0)
-  const tilled = color.mul(furrows.mul(0.12).add(1).sub(track.mul(isCorn).mul(0.18)))
+  const tilled = color.mul(furrows.mul(0.07).add(1).sub(track.mul(isCorn).mul(0.18)))
   return vec4(mix(tilled, grass.mul(0.8), verge), verge.mul(STALKS))
 }
 

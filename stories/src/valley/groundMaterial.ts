@@ -45,7 +45,7 @@ const CLEARED = 0.7
 const STUBBLE = 0.16
 
 /** Part of the sky's light that a wet road mirrors at grazing angles. */
-const MIRRORED = 0.5
+const MIRRORED = 0.2
 
 /** Distances within which the finest grain of the ground is drawn, and that of tufts [m]. */
 const NEAR = 200

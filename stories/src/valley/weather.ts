@@ -80,11 +80,11 @@ export const weathers = {
     turbidity: 2.5,
     mist: 0,
     ...calm,
-    rain: 8,
+    rain: 5,
     tall: 6000,
     flashes: 4,
     deckDensity: 0.15,
-    deckRain: 0.2,
+    deckRain: 0.1,
     exposure: -1
   }
 } satisfies Record<string, Weather>
@@ -107,7 +107,7 @@ const deckForm = {
 const fogForm: typeof deckForm = {
   baseAltitude: 595,
   topAltitude: 690,
-  density: 0.035,
+  density: 0.03,
   weatherScale: 0.3,
   shapeScale: 0.25,
   detailAmount: 0,
