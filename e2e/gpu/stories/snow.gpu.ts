@@ -123,7 +123,7 @@ gpuTest('what stands beside a wall has less light of the sky, and all of the sun
   const shaded = await green()
   open.value = 1
   const skyAlone = await green()
-  t.note(`${[all, beside, skyAlone, shaded].map(value => value.toFixed(4)).join(', ')}`)
+  t.note([all, beside, skyAlone, shaded].map(value => value.toFixed(4)).join(', '))
   expectTrue(Math.abs(shaded / skyAlone - 0.25) < 0.01, 'a quarter of the sky is left')
   expectTrue(Math.abs(all - beside - (skyAlone - shaded)) < 1e-3, 'the sun shines as before')
   material.dispose()

@@ -42,20 +42,30 @@ const BLUR = 0.03
 /** Mean square slope of the ripples. */
 const SLOPE = 0.0002
 
-/** Tangent of the skyline's elevation about the lake, by azimuth and place along the lake. */
+/**
+ * Tangent of the skyline's elevation as seen from the lake.
+ *
+ * @param azimuth - Direction, from x towards z [rad].
+ * @param from - Place along the lake [m].
+ */
+export function skylineHeight(azimuth: number, from: number): number {
+  let highest = 0
+  for (let step = 0; step < STEPS; step++) {
+    const distance = REACH[0] * (REACH[1] / REACH[0]) ** (step / (STEPS - 1))
+    const x = LAKE.x + distance * Math.cos(azimuth)
+    const z = from + distance * Math.sin(azimuth)
+    highest = Math.max(highest, (groundHeight(x, z) - LAKE.height) / distance)
+  }
+  return highest
+}
+
+/** Skyline's heights by azimuth and place along the lake. */
 function skyline(): DataTexture {
   const heights = Uint16Array.from({ length: AZIMUTHS * PLACES }, (_, i) => {
     const azimuth = (2 * Math.PI * ((i % AZIMUTHS) + 0.5)) / AZIMUTHS - Math.PI
     const place = (Math.floor(i / AZIMUTHS) + 0.5) / PLACES
     const from = LAKE.z + LAKE.halfLength * (2 * place - 1)
-    let highest = 0
-    for (let step = 0; step < STEPS; step++) {
-      const distance = REACH[0] * (REACH[1] / REACH[0]) ** (step / (STEPS - 1))
-      const x = LAKE.x + distance * Math.cos(azimuth)
-      const z = from + distance * Math.sin(azimuth)
-      highest = Math.max(highest, (groundHeight(x, z) - LAKE.height) / distance)
-    }
-    return DataUtils.toHalfFloat(highest)
+    return DataUtils.toHalfFloat(skylineHeight(azimuth, from))
   })
   const result = new DataTexture(heights, AZIMUTHS, PLACES, RedFormat, HalfFloatType)
   result.wrapS = RepeatWrapping
