@@ -10,6 +10,7 @@ import {
 import { uniform } from 'three/tsl'
 import { setFarFoliage, setFoliage } from '../../../stories/src/valley/leaves'
 import { distantTree, leafyTree } from '../../../stories/src/valley/treeShapes'
+import { setLit } from '../../../stories/src/valley/litLights'
 import { VertexLitMaterial } from '../../../stories/src/valley/VertexLitMaterial'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -119,7 +120,7 @@ gpuTest('what stands beside a wall has less light of the sky, and all of the sun
   const all = await green()
   open.value = 0.25
   const beside = await green()
-  sun.intensity = 0
+  setLit(sun, false)
   const shaded = await green()
   open.value = 1
   const skyAlone = await green()
