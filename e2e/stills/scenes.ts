@@ -174,7 +174,7 @@ const valleys: ValleyStill[] = [
   {
     name: 'valley-evening',
     about: 'the last sun on summits and clouds, and in the lake',
-    valley: { view: 'shore', hour: 19.1 }
+    valley: { view: 'shore', hour: 19 }
   },
   {
     name: 'valley-west',

@@ -145,7 +145,7 @@ export const Morning: Story = { args: { hour: 7, weather: 'mist', view: 'slope',
 
 /** The last sun is on summits and clouds, and in the lake. */
 export const Evening: Story = {
-  args: { hour: 19.1, view: 'shore', dayLength: 1800 }
+  args: { hour: 19, view: 'shore', dayLength: 1800 }
 }
 
 /** The village's windows are lit; the moon and the stars are. */
