@@ -173,8 +173,13 @@ const valleys: ValleyStill[] = [
   },
   {
     name: 'valley-evening',
-    about: 'low sun among broken clouds',
-    valley: { view: 'shore', hour: 18.4, weather: 'broken' }
+    about: 'the last sun on summits and clouds, and in the lake',
+    valley: { view: 'shore', hour: 19 }
+  },
+  {
+    name: 'valley-west',
+    about: 'the sun goes behind the mountains across the lake, among broken clouds',
+    valley: { view: 'west', hour: 18, weather: 'broken' }
   },
   {
     name: 'valley-night',
@@ -203,8 +208,9 @@ const valleys: ValleyStill[] = [
   },
   {
     name: 'valley-storm',
-    about: 'towers over the valley at evening, dark shafts of rain below them',
-    valley: { view: 'village', hour: 19, weather: 'storm' }
+    about:
+      'dark clouds over the valley in the afternoon, shafts of rain below them, wet ground and roofs',
+    valley: { view: 'village', hour: 15, weather: 'storm' }
   },
   {
     name: 'valley-snow',
@@ -213,8 +219,8 @@ const valleys: ValleyStill[] = [
   },
   {
     name: 'valley-above',
-    about: 'over broken clouds at noon',
-    valley: { view: 'above', hour: 14, weather: 'broken' }
+    about: 'over cumulus among snowy summits, the lake between them',
+    valley: { view: 'above', hour: 9 }
   },
   {
     name: 'valley-effects',

@@ -143,9 +143,9 @@ export const Day: Story = { name: 'A day', tags: ['screenshot'] }
 /** Mist over the lake, in the shadow of a mountain and in the sun. */
 export const Morning: Story = { args: { hour: 7, weather: 'mist', view: 'slope', dayLength: 1800 } }
 
-/** The sun is low among broken clouds. */
+/** The last sun is on summits and clouds, and in the lake. */
 export const Evening: Story = {
-  args: { hour: 18.4, weather: 'broken', view: 'shore', dayLength: 1800 }
+  args: { hour: 19, view: 'shore', dayLength: 1800 }
 }
 
 /** The village's windows are lit; the moon and the stars are. */
@@ -159,8 +159,8 @@ export const Shower: Story = {
   args: { hour: 12.3, date: Date.UTC(2026, 10, 1), weather: 'shower', dayLength: 1800 }
 }
 
-/** A storm on a summer evening; switch the lightning on. */
-export const Storm: Story = { args: { hour: 19, weather: 'storm', dayLength: 1800 } }
+/** A storm on a summer afternoon; switch the lightning on. */
+export const Storm: Story = { args: { hour: 15, weather: 'storm', dayLength: 1800 } }
 
 /** Snowfall in winter: the ground whitens. */
 export const Snow: Story = {

@@ -1,6 +1,7 @@
 import { CloudLayers, cloudQualities } from '@welkin/clouds'
 import { expect, it } from 'vitest'
 import { groundHeight } from '../src/valley/ground'
+import { VIEWS } from '../src/valley/views'
 import { valleyLayers, WeatherBlend } from '../src/valley/weather'
 
 const qualityIn = (name: 'fair' | 'mist' | 'overcast'): (typeof cloudQualities)['medium'] => {
@@ -85,4 +86,35 @@ it('clouds of a broken sky are over most of the mountains, and cumulus below the
   }
   expect(above / all).toBeLessThan(0.25)
   expect(cumulus.topAltitude).toBeLessThanOrEqual(deck.baseAltitude)
+})
+
+it('a storm goes dark bit by bit, below a deck without gaps, and rains from its towers', () => {
+  const blend = new WeatherBlend('fair')
+  const layers = new CloudLayers(valleyLayers)
+  blend.set('storm', false)
+  const exposures: number[] = []
+  const densities: number[] = []
+  do {
+    blend.apply(layers, true, true, true, true)
+    exposures.push(blend.current.exposure)
+    densities.push(layers.at(1).parameters.density)
+  } while (blend.update(0.1))
+  blend.apply(layers, true, true, true, true)
+  const steps = (values: number[]): number[] => values.slice(1).map((each, i) => each - values[i])
+  expect(Math.max(...steps(exposures))).toBeLessThanOrEqual(0)
+  expect(Math.min(...steps(exposures))).toBeGreaterThan(-0.05)
+  expect(Math.min(...steps(densities))).toBeGreaterThanOrEqual(0)
+  const [tower, deck] = [0, 1].map(i => layers.at(i).parameters)
+  expect(exposures.at(-1)).toBeLessThan(-0.5)
+  expect(deck.coverage).toBeGreaterThan(0.8)
+  const rates = [tower, deck].map(({ precipitation }) => precipitation?.rate ?? 0)
+  expect(rates[0]).toBeGreaterThan(5 * rates[1])
+})
+
+it('the view above the clouds is over those of fair weather', () => {
+  const layers = new CloudLayers(valleyLayers)
+  new WeatherBlend('fair').apply(layers, true, true, true, true)
+  const [x, y, z] = VIEWS.above.position
+  expect(600 + y).toBeGreaterThan(layers.at(0).parameters.topAltitude + 100)
+  expect(y - groundHeight(x, z)).toBeGreaterThan(1000)
 })

@@ -1,5 +1,5 @@
 import { float, texture, vec3, vec4 } from 'three/tsl'
-import { createNoiseTexture } from '../../../stories/src/globe/detailNoise'
+import { createGroundNoise } from '../../../stories/src/valley/groundNoise'
 import { finestAt, groundHeight } from '../../../stories/src/valley/ground'
 import { coarseNoise } from '../../../stories/src/valley/groundMaterial'
 import { PatchMap } from '../../../stories/src/valley/PatchMap'
@@ -40,7 +40,7 @@ const MAPPED = 9000
 gpuTest("the valley's map of coarse noise has it where it is", async t => {
   const renderer = await t.createRenderer()
   const draw = random(4)
-  const picture = createNoiseTexture()
+  const picture = createGroundNoise()
   const noise = coarseNoise(at => texture(picture, at).level(float(TEXEL_LEVEL)).r.sub(0.5).mul(2))
   const map = new PatchMap(noise)
   const inputs = Array.from({ length: 200 }, () => {

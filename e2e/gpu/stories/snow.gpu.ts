@@ -10,11 +10,12 @@ import {
 import { uniform } from 'three/tsl'
 import { setFarFoliage, setFoliage } from '../../../stories/src/valley/leaves'
 import { distantTree, leafyTree } from '../../../stories/src/valley/treeShapes'
+import { setLit } from '../../../stories/src/valley/litLights'
 import { VertexLitMaterial } from '../../../stories/src/valley/VertexLitMaterial'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 
-gpuTest('snow lies on top of a thing, not on its sides', async t => {
+gpuTest('snow lies on top of a thing, not on its sides; what is wet is darker', async t => {
   const size = { width: 32, height: 32 }
   const renderer = await t.createRenderer(size)
   const scene = new Scene()
@@ -23,6 +24,8 @@ gpuTest('snow lies on top of a thing, not on its sides', async t => {
   const material = new VertexLitMaterial({ color: 0x331111 })
   const snow = uniform(0)
   material.snowNode = snow
+  const wet = uniform(0)
+  material.wetNode = wet
   scene.add(light, new Mesh(new BoxGeometry(), material))
   const camera = new PerspectiveCamera(40, 1, 0.1, 10)
   camera.position.set(0, 1.6, 1.6)
@@ -45,6 +48,15 @@ gpuTest('snow lies on top of a thing, not on its sides', async t => {
   if (!(white[0] > 10 * bare[0])) throw new Error(`the top is ${white[0]}, and was ${bare[0]}`)
   if (!(Math.abs(white[1] - bare[1]) < 1e-3)) throw new Error(`the side is ${white[1]}`)
   if (!(bare[1] > 0)) throw new Error('the side is black')
+  snow.value = 0
+  wet.value = 1
+  const [wetTop, wetSide] = await green()
+  for (const [dry, now] of [
+    [bare[0], wetTop],
+    [bare[1], wetSide]
+  ]) {
+    expectTrue(now > 0.5 * dry && now < 0.75 * dry, `${now} when wet, and ${dry} when dry`)
+  }
   material.dispose()
 })
 
@@ -86,4 +98,34 @@ gpuTest('leaves fall: twigs are left of a crown, and one looks through it far aw
     tree.geometry.dispose()
     material.dispose()
   }
+})
+
+gpuTest('what stands beside a wall has less light of the sky, and all of the sun', async t => {
+  const size = { width: 16, height: 16 }
+  const renderer = await t.createRenderer(size)
+  const scene = new Scene()
+  const material = new VertexLitMaterial()
+  const open = uniform(1)
+  material.openNode = open
+  const [sky, sun] = [new AmbientLight(0xffffff, 1), new DirectionalLight(0xffffff, 1)]
+  sun.position.set(0, 1, 0)
+  const ground = new Mesh(new BoxGeometry(4, 1, 4), material)
+  scene.add(sky, sun, ground)
+  const camera = new PerspectiveCamera(30, 1, 0.1, 10)
+  camera.position.set(0, 4, 0.01)
+  camera.lookAt(0, 0, 0)
+  camera.updateMatrixWorld()
+  const green = async (): Promise<number> =>
+    (await t.render(renderer, scene, camera, size)).at(8, 8)[1]
+  const all = await green()
+  open.value = 0.25
+  const beside = await green()
+  setLit(sun, false)
+  const shaded = await green()
+  open.value = 1
+  const skyAlone = await green()
+  t.note([all, beside, skyAlone, shaded].map(value => value.toFixed(4)).join(', '))
+  expectTrue(Math.abs(shaded / skyAlone - 0.25) < 0.01, 'a quarter of the sky is left')
+  expectTrue(Math.abs(all - beside - (skyAlone - shaded)) < 1e-3, 'the sun shines as before')
+  material.dispose()
 })

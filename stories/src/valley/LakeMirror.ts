@@ -33,7 +33,7 @@ const THICKNESS = [0.08, 6] as const
 /** Greatest distance that the picture tells apart from the sky [m]. */
 export const SKY_DEPTH = 60_000
 /** Distance beyond the picture's edges, over its size, at which the mirror image has faded. */
-const FADE = 0.08
+const FADE = 0.14
 
 /** Least rise of a mirrored direction, which does not go down into the water. */
 const LEAST_RISE = 0.004

@@ -4,9 +4,11 @@ import { disposeMeshes } from '../scene'
 import type { ValleyPrecipitation } from './falling'
 import { createBirches, createForest, createGrove } from './forest'
 import { createGround } from './ground'
+import { OpenSky } from './OpenSky'
 import { Relief } from './relief'
 import type { StreetLamps } from './StreetLamps'
 import type { Trees } from './Trees'
+import { outlines } from './village'
 
 /** Quads of the ground along a side, by quality. */
 const QUADS: Readonly<Record<CloudQualityName, number>> = {
@@ -38,8 +40,10 @@ export class Land extends Group {
   readonly #lamps: StreetLamps
   #quality?: CloudQualityName
   #hasTrees = true
+  #hasVillage = true
   #ground = new Group()
   #relief?: Relief
+  #sky?: OpenSky
   #trees: readonly Trees[] = []
 
   constructor(falling: ValleyPrecipitation, lamps: StreetLamps) {
@@ -58,21 +62,27 @@ export class Land extends Group {
     this.#relief = new Relief(RELIEF[quality])
     const lamplight = this.#lamps.reflected()
     const { water } = this.#falling
-    this.#ground = createGround(QUADS[quality], water, this.#relief, lamplight)
     const trees = TREES[quality]
-    const snow = water.snowCoverNode
     this.#trees = [
-      createForest(trees, snow),
-      createGrove(Math.round(trees / 16), snow),
-      createBirches(Math.round(trees / 48), snow)
+      createForest(trees, water),
+      createGrove(Math.round(trees / 16), water),
+      createBirches(Math.round(trees / 48), water)
     ]
+    const sky = new OpenSky()
+    sky.addHouses(outlines())
+    for (const each of this.#trees) sky.addTrees(each.trees.map(({ matrix }) => matrix))
+    this.#sky = sky
+    this.#ground = createGround(QUADS[quality], water, this.#relief, lamplight, sky)
     this.add(this.#ground, ...this.#trees)
-    this.showTrees(this.#hasTrees)
+    this.show(this.#hasTrees, this.#hasVillage)
   }
 
-  showTrees(areShown: boolean): void {
-    this.#hasTrees = areShown
-    for (const each of this.#trees) each.visible = areShown
+  /** Shows trees or not, and the shade of the village. */
+  show(trees: boolean, village: boolean): void {
+    this.#hasTrees = trees
+    this.#hasVillage = village
+    for (const each of this.#trees) each.visible = trees
+    this.#sky?.show({ houses: village, trees })
   }
 
   /**
@@ -89,5 +99,6 @@ export class Land extends Group {
     disposeMeshes(this.#ground.children as Mesh[])
     for (const each of this.#trees) each.dispose()
     this.#relief?.dispose()
+    this.#sky?.dispose()
   }
 }

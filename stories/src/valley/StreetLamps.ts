@@ -21,9 +21,9 @@ import { VertexLitMaterial } from './VertexLitMaterial'
 type Lamp = readonly [x: number, z: number, intensity: number, height: number]
 
 /** Luminous intensity and height of a street lamp, and luminance of its globe [cd, m, cd/m²]. */
-const STREET = { intensity: 60, height: 5, luminance: 25 } as const
+const STREET = { intensity: 140, height: 5, luminance: 25 } as const
 /** Luminous intensity and height of the lamp over a door [cd, m]. */
-const DOOR = { intensity: 6, height: 2.4 } as const
+const DOOR = { intensity: 12, height: 2.4 } as const
 /** Colour of sodium lamps and bulbs, linear sRGB of luminance 1. */
 const COLOR = [1.9, 0.8, 0.19] as const
 

@@ -1,6 +1,6 @@
 import { Color, DoubleSide, Group, InstancedMesh, Vector3 } from 'three'
 import type { BufferGeometry, Matrix4, PerspectiveCamera } from 'three'
-import type { Node } from 'three/webgpu'
+import type { SurfaceWater } from '@welkin/atmosphere'
 import { disposeMeshes } from '../scene'
 import { fallenLeaves, setFarFoliage, setFoliage } from './leaves'
 import { VertexLitMaterial } from './VertexLitMaterial'
@@ -23,18 +23,21 @@ const COS_ASIDE = Math.cos(1.08)
 const STEEP = 0.6
 
 /** Part of a crown's upper side that snow covers, at most, and of one without leaves. */
-const SNOWED = 0.7
-const SNOWED_BARE = 0.3
+const SNOWED = 0.55
+const SNOWED_BARE = 0.6
 
 /** Cosines of the slopes of a crown of needles between which snow comes to lie: its branches hold it where a roof would not. */
 const NEEDLED = [-0.15, 0.6] as const
+
+/** Cosines of the slopes of bare twigs that rime covers: it is on all sides. */
+const TWIGGED = [-1.4, 0.6] as const
 
 const _place = new Vector3()
 const _direction = new Vector3()
 
 /** Trees of a kind, drawn with fewer triangles the farther they are from the camera. */
 export class Trees extends Group {
-  readonly #trees: readonly Tree[]
+  readonly trees: readonly Tree[]
   readonly #distances: readonly number[]
   /** Levels of detail, the finest first. */
   readonly levels: readonly InstancedMesh[]
@@ -45,27 +48,29 @@ export class Trees extends Group {
    * @param geometries - Finest to coarsest, with vertex colours.
    * @param distances - Distances from which each but the first is drawn [m].
    * @param leafy - Number of geometries that have leaves with gaps, see {@link setFoliage}.
-   * @param winter - Share of what faces the sky that snow covers, and whether their leaves fall; null for no winter.
+   * @param winter - Rain and snow on them, and whether their leaves fall; null for no weather.
    */
   constructor(
     geometries: readonly BufferGeometry[],
     distances: readonly number[],
     trees: readonly Tree[],
     leafy: number,
-    winter: { snow: Node<'float'>; isBare: boolean } | null = null
+    winter: { water: SurfaceWater; isBare: boolean } | null = null
   ) {
     super()
-    this.#trees = trees
+    this.trees = trees
     this.#distances = distances
     const near = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
     const isBare = winter?.isBare === true
-    const fallen = isBare ? fallenLeaves(winter.snow) : null
+    const snow = winter?.water.snowCoverNode ?? null
+    const fallen = isBare && snow !== null ? fallenLeaves(snow) : null
     setFoliage(near, fallen)
     // Gaps are smaller than pixels elsewhere.
     const far = new VertexLitMaterial({ side: DoubleSide, vertexColors: true })
     if (fallen !== null) setFarFoliage(far, fallen)
-    near.snowNode = far.snowNode = winter && winter.snow.mul(isBare ? SNOWED_BARE : SNOWED)
-    if (!isBare) near.lying = far.lying = NEEDLED
+    near.snowNode = far.snowNode = snow && snow.mul(isBare ? SNOWED_BARE : SNOWED)
+    near.lying = far.lying = isBare ? TWIGGED : NEEDLED
+    near.wetNode = far.wetNode = winter?.water.wetnessNode ?? null
     this.levels = geometries.map((geometry, level) => {
       const mesh = new InstancedMesh(geometry, level < leafy ? near : far, trees.length)
       mesh.setColorAt(0, new Color())
@@ -93,7 +98,7 @@ export class Trees extends Group {
     const isSteep = Math.abs(_direction.y) > STEEP
     const last = this.#distances.length
     for (const level of this.levels) level.count = 0
-    for (const { matrix, color } of this.#trees) {
+    for (const { matrix, color } of this.trees) {
       _place.setFromMatrixPosition(matrix).sub(position)
       const distance = _place.length()
       const index = this.#distances.filter(from => distance >= from).length

@@ -81,10 +81,10 @@ const SUNLIGHT = -3
 const TWILIGHT = -20
 
 /** Brighter pictures while snow lies, or it is grey [stops]. */
-const SNOW_COMPENSATION = 0.25
+const SNOW_COMPENSATION = 0.6
 
 /** Brighter pictures of nights, or what the moon lights is black [stops], and elevation of the sun by which they are [degrees]. */
-const NIGHT_COMPENSATION = 1.3
+const NIGHT_COMPENSATION = 0.9
 const NIGHT = -10
 
 /** Turn of the sun after which the sky that the lake mirrors beside the picture is drawn anew [degrees]. */
@@ -111,12 +111,7 @@ export class Valley {
   readonly #glows = [milkyWay(), stars(), airglow()] as const
   readonly #lamps = new StreetLamps(doors())
   readonly #land = new Land(this.#falling, this.#lamps)
-  readonly #village = createVillage(
-    groundHeight,
-    VILLAGE,
-    this.#lamps,
-    this.#falling.water.snowCoverNode
-  )
+  readonly #village = createVillage(groundHeight, VILLAGE, this.#lamps, this.#falling.water)
   readonly #mirror: LakeMirror
   readonly #water
   readonly #node
@@ -233,7 +228,7 @@ export class Valley {
     const fineness = typeof quality === 'string' ? quality : 'low'
     this.#shafts.quality = SHAFTS[fineness]
     this.#land.setQuality(fineness)
-    this.#land.showTrees(trees)
+    this.#land.show(trees, village)
     applyFactors(this.#state, this.#style, this.#targets)
     // The lake alone has an environment.
     this.scene.environmentIntensity = Number(environment)
@@ -301,8 +296,9 @@ export class Valley {
     const elevation = MathUtils.radToDeg(Math.asin(sunDirection.y))
     const share = MathUtils.clamp((from - elevation) / (from - to), 0, 1)
     const night = MathUtils.smoothstep(-elevation, 0, -NIGHT)
-    this.exposure.compensation =
-      SNOW_COMPENSATION * this.#falling.water.snowCover + NIGHT_COMPENSATION * night
+    const { snowCover } = this.#falling.water
+    const byDay = this.weather.exposure + SNOW_COMPENSATION * snowCover
+    this.exposure.compensation = MathUtils.lerp(byDay, NIGHT_COMPENSATION, night)
     const isNight = elevation < NIGHT_LIGHTS
     const isMoonlit = this.#moonShadow.update(this.camera, isNight)
     for (const light of this.#moonlights) setLit(light, isMoonlit)

@@ -29,6 +29,9 @@ type Vec3 = Node<'vec3'>
 const SNOW = [0.78, 0.8, 0.83] as const
 const LYING = [0.12, 0.7] as const
 
+/** Part of its brightness that a wet surface keeps: of what it scatters, its film mirrors half back (Lekner & Dorf 1988). */
+const WET = 0.6
+
 /** Maps that have the light of a light. */
 const _mapped = new WeakMap<Light, SkyLightMap>()
 
@@ -67,7 +70,9 @@ class VertexLightingModel extends PhongLightingModel {
     const others = received(lit, light => !_mapped.has(light))
     // One colour for all of them: what vertices hand on costs each pixel.
     if (others.length > 0 || map !== undefined) {
-      context.irradiance.addAssign(atVertices(others, map))
+      const light = atVertices(others, map)
+      const { openNode } = lit.material as VertexLitMaterial
+      context.irradiance.addAssign(openNode ? light.mul(openNode) : light)
     }
     this.indirect(builder)
   }
@@ -106,6 +111,12 @@ export class VertexLitMaterial extends MeshLambertNodeMaterial {
   /** Share of what faces the sky that snow covers, in [0, 1]; null for none. */
   snowNode: Node<'float'> | null = null
 
+  /** Share of the surface that is wet, in [0, 1]; null for none. */
+  wetNode: Node<'float'> | null = null
+
+  /** Share of the sky that is seen from a place, in [0, 1]; null for all of it. */
+  openNode: Node<'float'> | null = null
+
   /** Cosines of the slopes between which snow comes to lie; branches hold it on steep crowns. */
   lying: readonly [number, number] = LYING
 
@@ -115,6 +126,10 @@ export class VertexLitMaterial extends MeshLambertNodeMaterial {
 
   override setupDiffuseColor(builder: NodeBuilder): void {
     super.setupDiffuseColor(builder)
+    if (this.wetNode !== null) {
+      const { rgb, a } = diffuseColor as unknown as Node<'vec4'>
+      diffuseColor.assign(vec4(rgb.mul(this.wetNode.mul(WET - 1).add(1)), a))
+    }
     if (this.snowNode === null) return
     const { rgb, a } = diffuseColor as unknown as Node<'vec4'>
     const lying = smoothstep(...this.lying, normalWorldGeometry.y).mul(this.snowNode)

@@ -12,6 +12,7 @@ import {
   vec2,
   vec3
 } from 'three/tsl'
+import type { SurfaceWater } from '@welkin/atmosphere'
 import type { Node } from 'three/webgpu'
 import { roof } from './roof'
 import { VertexLitMaterial } from './VertexLitMaterial'
@@ -84,14 +85,15 @@ export class Church extends Group {
 
   /**
    * @param tiles - Material of a roof, whose tiles are counted on the unit roof.
-   * @param snow - Share of the roofs that snow covers, in [0, 1]; null for none.
+   * @param water - Rain and snow on it; null for none.
    */
-  constructor(tiles: VertexLitMaterial, snow: Float | null) {
+  constructor(tiles: VertexLitMaterial, water: SurfaceWater | null) {
     super()
     const walls = new VertexLitMaterial()
     walls.colorNode = wallColor()
     const slates = new VertexLitMaterial({ color: '#4b352d' })
-    slates.snowNode = snow
+    slates.snowNode = water?.snowCoverNode ?? null
+    for (const each of [walls, slates]) each.wetNode = water?.wetnessNode ?? null
     const [side, height] = TOWER
     const [width, eaves, length] = NAVE
     const middle = NAVE_FROM + length / 2

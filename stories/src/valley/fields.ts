@@ -1,4 +1,4 @@
-import { floor, fract, mix, positionWorld, sin, smoothstep, vec3 } from 'three/tsl'
+import { floor, fract, mix, positionWorld, sin, smoothstep, vec3, vec4 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { VILLAGE } from './places'
 
@@ -29,8 +29,11 @@ export const HALF_ROAD = 2.2
 const STRAY = 0.012
 const VERGE = 0.011
 
+/** Part of a verge whose stalks snow does not cover. */
+const STALKS = 0.22
+
 /**
- * Fields in strips, with their furrows; grass in some, and on the verges between them.
+ * Fields in strips, with their furrows; grass in some, and on the verges between them. In alpha the part that snow does not cover.
  *
  * @param noise - Noise of clumps of grass, about in [−1, 1].
  */
@@ -38,7 +41,7 @@ export function crops(
   grass: Node<'vec3'>,
   distance: Node<'float'>,
   noise: Node<'float'>
-): Node<'vec3'> {
+): Node<'vec4'> {
   const { x, z } = positionWorld
   const across = x
     .div(STRIP)
@@ -72,8 +75,8 @@ export function crops(
     )
   const verge = smoothstep(0.5 - 2 * VERGE, 0.5 - VERGE, border)
   const isCorn = chance.greaterThan(0.4).select(1, 0)
-  const tilled = color.mul(furrows.mul(0.12).add(1).sub(track.mul(isCorn).mul(0.3)))
-  return mix(tilled, grass.mul(0.8), verge)
+  const tilled = color.mul(furrows.mul(0.07).add(1).sub(track.mul(isCorn).mul(0.18)))
+  return vec4(mix(tilled, grass.mul(0.8), verge), verge.mul(STALKS))
 }
 
 /** 1 on that road. Twin of the middle: `roadMiddle` of the ground. */

@@ -1,5 +1,5 @@
 import { Color, Matrix4, Quaternion, Vector3 } from 'three'
-import type { Node } from 'three/webgpu'
+import type { SurfaceWater } from '@welkin/atmosphere'
 import { randomSequence } from '../random'
 import { fieldBorder, forestAt, groundHeight, isField, isOnRoad } from './ground'
 import { VILLAGE } from './places'
@@ -13,10 +13,10 @@ const REACH = 2600
 /** Distances from which trees are drawn with fewer triangles, and with the fewest [m]. */
 const DISTANCES = [130, 420] as const
 
-/** Share of what faces the sky that snow covers, in [0, 1]; null where none falls. */
-type Snow = Node<'float'> | null
+/** Rain and snow on trees; null where none falls. */
+type Water = SurfaceWater | null
 
-const winterOf = (snow: Snow, isBare: boolean) => snow && { snow, isBare }
+const winterOf = (water: Water, isBare: boolean) => water && { water, isBare }
 
 /** Chance of a tree that stands alone. Greater: from afar meadows are dotted (*Valley, all day*). */
 const LONE = 0.0024
@@ -34,17 +34,17 @@ const SUNK = { hedge: 0.22, open: 0.16, wood: 0 } as const
 const VILLAGE_BORDER = 6
 
 /** Spruces on the slopes. */
-export const createForest = (count: number, snow: Snow = null): Trees =>
+export const createForest = (count: number, water: Water = null): Trees =>
   new Trees(
     [branchedSpruce(9, 6), spruce(5, 8), spruce(1, 4)],
     DISTANCES,
     plant(count, 11, SUNK.wood, (x, z, height) => forestAt(x, z) + (height > 2 ? LONE / 2 : 0)),
     1,
-    winterOf(snow, false)
+    winterOf(water, false)
   )
 
 /** Broad-leaved trees about the village, along the shore, in hedges and copses. */
-export function createGrove(count: number, snow: Snow = null): Trees {
+export function createGrove(count: number, water: Water = null): Trees {
   const hedges = hedgesNear(0.25 * count)
   const others = plant(count - hedges.length, 23, SUNK.open, (x, z, height) => {
     const fromVillage = Math.hypot(x - VILLAGE.x, z - VILLAGE.z)
@@ -59,12 +59,12 @@ export function createGrove(count: number, snow: Snow = null): Trees {
     DISTANCES,
     hedges.concat(others),
     2,
-    winterOf(snow, true)
+    winterOf(water, true)
   )
 }
 
 /** Birches among them. */
-export const createBirches = (count: number, snow: Snow = null): Trees =>
+export const createBirches = (count: number, water: Water = null): Trees =>
   new Trees(
     [leafyTree('birch', 10), leafyTree('birch', 3), distantTree('birch', 2)],
     DISTANCES,
@@ -74,7 +74,7 @@ export const createBirches = (count: number, snow: Snow = null): Trees =>
       return height > 1.2 && height < 120 ? shore + copse : 0
     }),
     2,
-    winterOf(snow, true)
+    winterOf(water, true)
   )
 
 /** Trees in rows between fields, from the village outwards; rows have gaps. */

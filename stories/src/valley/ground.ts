@@ -5,6 +5,7 @@ import { HALF_ROAD, STRIP } from './fields'
 import { FARMED, groundMaterial, RADIUS } from './groundMaterial'
 import { ridges, smoothNoise } from './noise'
 import { LAKE, VILLAGE } from './places'
+import type { OpenSky } from './OpenSky'
 import type { Relief } from './relief'
 
 /** Half width of the land [m]. */
@@ -119,12 +120,14 @@ function tileOf(grid: BufferGeometry, quads: number, column: number, row: number
  * @param water - Rain and snow on it.
  * @param relief - Its slopes between the grid's vertices.
  * @param lamplight - Light of lamps that it gives back.
+ * @param sky - Part of the sky that it sees.
  */
 export function createGround(
   quads: number,
   water: SurfaceWater,
   relief: Relief,
-  lamplight: Node<'vec3'> | null = null
+  lamplight: Node<'vec3'> | null = null,
+  sky: OpenSky | null = null
 ): Group {
   const geometry = new PlaneGeometry(2, 2, quads, quads).rotateX(-Math.PI / 2)
   geometry.deleteAttribute('uv')
@@ -140,7 +143,7 @@ export function createGround(
   geometry.setAttribute('cover', new BufferAttribute(cover, 2))
   geometry.computeVertexNormals()
   const ground = new Group()
-  const material = groundMaterial(water, relief, lamplight)
+  const material = groundMaterial(water, relief, lamplight, sky)
   const along = Math.max(quads / TILE, 1)
   for (let i = 0; i < along ** 2; i++) {
     const tile = tileOf(geometry, quads, i % along, Math.floor(i / along))

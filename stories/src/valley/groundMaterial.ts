@@ -16,12 +16,14 @@ import {
   texture,
   transformNormalToView,
   vec2,
-  vec3
+  vec3,
+  vec4
 } from 'three/tsl'
 import type { Texture } from 'three'
 import type { Node } from 'three/webgpu'
-import { createNoiseTexture } from '../globe/detailNoise'
 import { crops, roadAt } from './fields'
+import { createGroundNoise } from './groundNoise'
+import type { OpenSky } from './OpenSky'
 import { PatchMap } from './PatchMap'
 import type { Relief } from './relief'
 import { VertexLitMaterial } from './VertexLitMaterial'
@@ -36,7 +38,14 @@ export const FARMED = 40
 const FALLEN_SNOW = 2300
 
 /** Parts of a snowed wood that are dark, seen from afar: between crowns, and on their tops. */
-const WOODS = [0.97, 0.62] as const
+const WOODS = [0.95, 0.76] as const
+
+/** Parts of a road, and of stubble, that snow does not cover. */
+const CLEARED = 0.7
+const STUBBLE = 0.16
+
+/** Part of the sky's light that a wet road mirrors at grazing angles. */
+const MIRRORED = 0.2
 
 /** Distances within which the finest grain of the ground is drawn, and that of tufts [m]. */
 const NEAR = 200
@@ -156,11 +165,12 @@ export const coarseNoise =
 export function groundMaterial(
   { wetnessNode, snowCoverNode }: SurfaceWater,
   relief: Relief,
-  lamplight: Node<'vec3'> | null
+  lamplight: Node<'vec3'> | null,
+  sky: OpenSky | null = null
 ): VertexLitMaterial {
   const material = new VertexLitMaterial()
   const place = positionWorld.xz
-  const picture = createNoiseTexture()
+  const picture = createGroundNoise()
   // Each of its many scales is blurred far away: there are coarser ones. The finest are seen along the ground.
   const [grazed, stone] = [picture.clone(), picture.clone()]
   picture.anisotropy = 1
@@ -238,11 +248,13 @@ export function groundMaterial(
   material.normalNode = transformNormalToView(normal)
   const dry = broad.mul(0.6).add(fine.mul(0.28)).add(0.43).clamp()
   const meadow = mix(vec3(0.053, 0.086, 0.027), vec3(0.14, 0.134, 0.055), dry).toVar()
+  // Colour, and the part that snow does not cover: stalks of verges, and a road that is cleared.
   const farmed = Fn(() => {
-    const ground = meadow.toVar()
+    const ground = vec4(meadow, 0).toVar()
     If(height.lessThan(FARMED), () => {
-      const tilled = mix(meadow, crops(meadow, distance, clumps), field)
-      ground.assign(mix(tilled, vec3(0.24, 0.21, 0.17), roadAt()))
+      const road = roadAt().toConst()
+      const tilled = mix(vec4(meadow, 0), crops(meadow, distance, clumps), field)
+      ground.assign(mix(tilled, vec4(0.24, 0.21, 0.17, CLEARED), road))
     })
     return ground
   })()
@@ -254,7 +266,7 @@ export function groundMaterial(
     .mul(upTo(MIDDLE).mul(clumps.mul(0.9).add(0.65).clamp(0.15, 1.2)))
     .toVar()
   const hue = mix(vec3(0.93, 1.02, 0.86), vec3(1.08, 0.99, 1.06), tuft.add(0.5))
-  const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.4)))
+  const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.24)))
   const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW)).toVar()
   const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
@@ -262,7 +274,8 @@ export function groundMaterial(
   const dark = forest.mul(mix(float(WOODS[0]), float(WOODS[1]), canopy)).clamp()
   // Heights are those that no noise takes a part beyond.
   const color = Fn(() => {
-    const result = farmed.toVar()
+    const land = farmed.toConst()
+    const result = land.rgb.toVar()
     // Before branches: three computes in each of them what it meets there first.
     const cracked = cracks.toConst()
     const weathered = fine.mul(0.35).add(cracked.y.mul(0.55)).add(0.5).clamp()
@@ -274,7 +287,11 @@ export function groundMaterial(
     )
     // It lies in cracks, and is blown off what is between them.
     const steep = slope.add(cracked.y.mul(0.06))
-    const whitened = snow.mul(smoothstep(0.46, 0.3, steep)).mul(dark.oneMinus())
+    const stalks = land.a.mul(grain.mul(0.5).add(1)).add(smoothstep(0.2, 0.55, tuft).mul(STUBBLE))
+    const whitened = snow
+      .mul(smoothstep(0.46, 0.3, steep))
+      .mul(dark.oneMinus())
+      .mul(stalks.clamp().oneMinus())
     const cover = (other: Node<'vec3'>, share: Node<'float'>): void =>
       void result.assign(mix(result, other, share))
     If(height.greaterThan(350), () =>
@@ -290,11 +307,17 @@ export function groundMaterial(
     If(wetnessNode.greaterThan(0), () => {
       const back = result.oneMinus().mul(1.777).add(result)
       result.divAssign(mix(vec3(1), back, wetnessNode))
+      // A wet road mirrors the sky as water does; ruts and stones scatter half of it.
+      const grazing = cameraPosition.sub(positionWorld).normalize().y.oneMinus()
+      const isRoad = smoothstep(0.5, CLEARED, land.a)
+      const mirrored = grazing.pow(5).mul(wetnessNode).mul(isRoad).mul(MIRRORED)
+      result.assign(mix(result, vec3(1), mirrored))
     })
     If(snowLine.greaterThan(900), () => cover(white, whitened))
     return result
   })()
   material.colorNode = color
   material.emissiveNode = lamplight
+  if (sky !== null) material.openNode = sky.sample(footprint.right, footprint.down)
   return material
 }

@@ -14,6 +14,7 @@ import {
   mix,
   normalView,
   positionViewDirection,
+  positionWorld,
   reflectVector,
   smoothstep,
   texture,
@@ -27,8 +28,11 @@ import { waterReflectance, type LakeMirror } from './LakeMirror'
 
 /** Directions and distances in which the skyline is looked for, and the nearest and farthest of these [m]. */
 const AZIMUTHS = 128
-const STEPS = 48
+const STEPS = 40
 const REACH = [250, 20_000] as const
+
+/** Places along the lake from which it is looked for: from its shores mountains are higher than from its middle. */
+const PLACES = 5
 
 /** Brightness of land that the lake mirrors over that of the sky before it. */
 const MIRRORED_LAND = 0.22
@@ -38,20 +42,32 @@ const BLUR = 0.03
 /** Mean square slope of the ripples. */
 const SLOPE = 0.0002
 
-/** Tangent of the skyline's elevation about the lake, by azimuth. */
+/**
+ * Tangent of the skyline's elevation as seen from the lake.
+ *
+ * @param azimuth - Direction, from x towards z [rad].
+ * @param from - Place along the lake [m].
+ */
+export function skylineHeight(azimuth: number, from: number): number {
+  let highest = 0
+  for (let step = 0; step < STEPS; step++) {
+    const distance = REACH[0] * (REACH[1] / REACH[0]) ** (step / (STEPS - 1))
+    const x = LAKE.x + distance * Math.cos(azimuth)
+    const z = from + distance * Math.sin(azimuth)
+    highest = Math.max(highest, (groundHeight(x, z) - LAKE.height) / distance)
+  }
+  return highest
+}
+
+/** Skyline's heights by azimuth and place along the lake. */
 function skyline(): DataTexture {
-  const heights = Uint16Array.from({ length: AZIMUTHS }, (_, i) => {
-    const azimuth = (2 * Math.PI * (i + 0.5)) / AZIMUTHS - Math.PI
-    let highest = 0
-    for (let step = 0; step < STEPS; step++) {
-      const distance = REACH[0] * (REACH[1] / REACH[0]) ** (step / (STEPS - 1))
-      const x = LAKE.x + distance * Math.cos(azimuth)
-      const z = LAKE.z + distance * Math.sin(azimuth)
-      highest = Math.max(highest, (groundHeight(x, z) - LAKE.height) / distance)
-    }
-    return DataUtils.toHalfFloat(highest)
+  const heights = Uint16Array.from({ length: AZIMUTHS * PLACES }, (_, i) => {
+    const azimuth = (2 * Math.PI * ((i % AZIMUTHS) + 0.5)) / AZIMUTHS - Math.PI
+    const place = (Math.floor(i / AZIMUTHS) + 0.5) / PLACES
+    const from = LAKE.z + LAKE.halfLength * (2 * place - 1)
+    return DataUtils.toHalfFloat(skylineHeight(azimuth, from))
   })
-  const result = new DataTexture(heights, AZIMUTHS, 1, RedFormat, HalfFloatType)
+  const result = new DataTexture(heights, AZIMUTHS, PLACES, RedFormat, HalfFloatType)
   result.wrapS = RepeatWrapping
   result.magFilter = result.minFilter = LinearFilter
   result.needsUpdate = true
@@ -80,7 +96,8 @@ export function createLake(
   const { x, y, z } = reflectVector
   const azimuth = atan(z, x).div(2 * Math.PI)
   const elevation = y.div(vec2(x, z).length().max(1e-4))
-  const height = texture(heights, vec2(azimuth.add(0.5), 0.5)).level(float(0)).r
+  const along = positionWorld.z.sub(LAKE.z).div(2 * LAKE.halfLength)
+  const height = texture(heights, vec2(azimuth, along).add(0.5)).level(float(0)).r
   const isSky = smoothstep(height.sub(BLUR), height.add(BLUR), elevation)
   const image = mirror.sample()
   const beside = mix(float(MIRRORED_LAND), float(1), isSky)

@@ -43,7 +43,7 @@ const FAR = 160
 const SHADED = 0.12
 
 /** Colour of twigs over that of leaves. */
-const TWIG_COLOR = [1.25, 0.66, 1.9] as const
+const TWIG_COLOR = [2.3, 1.35, 4] as const
 
 /** Coverage of twigs from which a place is solid near by, and the range of such limits far away. */
 const TWIG_EDGE = 0.3

@@ -11,6 +11,7 @@ export interface ShadowedLightNode {
   shadowNode: Node | null
 }
 export interface LightsBuilder {
+  material: object
   context: {
     irradiance: { addAssign(node: Vec3): void }
     reflectedLight: { directDiffuse: { assign(node: Vec3): void } }

@@ -40,5 +40,5 @@ export const openingState = {
   airglowStrength: 1,
   earthshine: 1,
   ambient: 1,
-  purkinjeShift: 1
+  purkinjeShift: 0.6
 } satisfies ValleyState

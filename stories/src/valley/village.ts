@@ -22,10 +22,12 @@ import {
   uniform,
   vec3
 } from 'three/tsl'
+import type { SurfaceWater } from '@welkin/atmosphere'
 import type { Node } from 'three/webgpu'
 import { randomSequence } from '../random'
 import { Church } from './church'
 import { groundHeight } from './ground'
+import type { Outline } from './OpenSky'
 import { VILLAGE } from './places'
 import { roof, roofColor } from './roof'
 import type { StreetLamps } from './StreetLamps'
@@ -34,7 +36,7 @@ import { VertexLitMaterial } from './VertexLitMaterial'
 
 const HOUSES = 46
 /** Luminances of the darkest and the brightest lit window [cd/m²], and luminous intensity of the lamp by the church [cd]. */
-const WINDOWS = [0.12, 1.2] as const
+const WINDOWS = [0.2, 2] as const
 const LAMP = 40
 /** Part of the windows that are lit. */
 const LIT = 0.42
@@ -93,6 +95,13 @@ export const doors = (): { x: number; z: number }[] =>
     x: x + (depth / 2 + 1.2) * Math.sin(turn),
     z: z + (depth / 2 + 1.2) * Math.cos(turn)
   }))
+
+/** Outlines of the houses and the church on the map. */
+export const outlines = (): Outline[] => [
+  ...housesAbout(VILLAGE),
+  { ...VILLAGE, width: 7, depth: 7, turn: 0 },
+  { x: VILLAGE.x, z: VILLAGE.z + 14, width: 11, depth: 22, turn: 0 }
+]
 
 /** Part of the houses whose upper floor is of timber. */
 const TIMBERED = 0.45
@@ -179,13 +188,13 @@ function churchLamp(x: number, y: number, z: number): PointLight & Pick<Village,
  * @param heightAt - Height of the ground at a place, default that of the valley [m].
  * @param middle - Place of the church, default by the valley's lake [m].
  * @param lamps - Lamps about it; by default one by the church.
- * @param snow - Share of the roofs that snow covers, in [0, 1]; null for none.
+ * @param water - Rain and snow on walls and roofs; null for none.
  */
 export function createVillage(
   heightAt = groundHeight,
   middle: Readonly<Record<'x' | 'z', number>> = VILLAGE,
   lamps: StreetLamps | null = null,
-  snow: Node<'float'> | null = null
+  water: SurfaceWater | null = null
 ): Village {
   const houses = housesAbout(middle)
   const lit = uniform(0)
@@ -229,7 +238,8 @@ export function createVillage(
   const tiles = new VertexLitMaterial()
   tiles.colorNode = roofColor()
   const plaster = new VertexLitMaterial({ color: '#6f655a' })
-  for (const each of [tiles, plaster]) each.snowNode = snow
+  for (const each of [tiles, plaster]) each.snowNode = water?.snowCoverNode ?? null
+  for (const each of [walls, tiles, plaster]) each.wetNode = water?.wetnessNode ?? null
   const bodies = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), walls, HOUSES)
   const roofs = new InstancedMesh(roof(), tiles, HOUSES)
   const chimneys = new InstancedMesh(new BoxGeometry().translate(0, 0.5, 0), plaster, HOUSES)
@@ -262,7 +272,7 @@ export function createVillage(
   }
   const { x, z } = middle
   const base = heightAt(x, z) - 0.5
-  const church = new Church(tiles, snow)
+  const church = new Church(tiles, water)
   church.position.set(x, base, z)
   const lights = lamps ?? churchLamp(x, base, z)
   const object = new Group().add(bodies, roofs, chimneys, church, lights)

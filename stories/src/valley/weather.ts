@@ -24,9 +24,24 @@ export interface Weather {
   /** Height of cumulus from its base [m], and flashes of lightning a minute. */
   readonly tall: number
   readonly flashes: number
+  /** Extinction of the deck [1/m]; rain below it over that below cumulus, in [0, 1]. */
+  readonly deckDensity: number
+  readonly deckRain: number
+  /** Brightness of pictures over what is metered [EV]: storms are dark, snow is white. */
+  readonly exposure: number
 }
 
-const calm = { base: 1500, deckBase: 2700, tall: 1200, rain: 0, snow: 0, flashes: 0 }
+const calm = {
+  base: 1500,
+  deckBase: 2700,
+  tall: 1200,
+  rain: 0,
+  snow: 0,
+  flashes: 0,
+  deckDensity: 0.04,
+  deckRain: 1,
+  exposure: 0
+}
 /** Cumulus alone. */
 const high = { ...calm, base: 1950 }
 /** Cumulus and a deck over the summits: before them, clouds of the colour of those behind cut pieces out of the mountains. */
@@ -38,18 +53,39 @@ export const weathers = {
   broken: { cumulus: 0.4, deck: 0.55, cirrus: 0, turbidity: 2.5, mist: 0, ...highest },
   mist: { cumulus: 0, deck: 0, cirrus: 0, turbidity: 3, mist: 1, ...calm },
   overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...calm },
-  shower: { cumulus: 0, deck: 0.75, cirrus: 0, turbidity: 2.25, mist: 0, ...calm, rain: 6 },
-  snow: { cumulus: 0, deck: 0.95, cirrus: 0, turbidity: 3, mist: 0, ...calm, snow: 1.5 },
+  shower: {
+    cumulus: 0,
+    deck: 0.75,
+    cirrus: 0,
+    turbidity: 2.25,
+    mist: 0,
+    ...calm,
+    rain: 6,
+    exposure: -0.4
+  },
+  snow: {
+    cumulus: 0,
+    deck: 0.95,
+    cirrus: 0,
+    turbidity: 3,
+    mist: 0,
+    ...calm,
+    snow: 1.5,
+    exposure: 0.3
+  },
   storm: {
     cumulus: 0.45,
-    deck: 0.4,
+    deck: 0.9,
     cirrus: 0,
     turbidity: 2.5,
     mist: 0,
     ...calm,
-    rain: 8,
+    rain: 5,
     tall: 6000,
-    flashes: 4
+    flashes: 4,
+    deckDensity: 0.15,
+    deckRain: 0.1,
+    exposure: -1
   }
 } satisfies Record<string, Weather>
 
@@ -71,7 +107,7 @@ const deckForm = {
 const fogForm: typeof deckForm = {
   baseAltitude: 595,
   topAltitude: 690,
-  density: 0.02,
+  density: 0.03,
   weatherScale: 0.3,
   shapeScale: 0.25,
   detailAmount: 0,
@@ -82,7 +118,13 @@ const fogForm: typeof deckForm = {
 
 /** Layers that `WeatherBlend` sets: cumulus, a deck over them or banks of fog, cirrus. */
 export const valleyLayers = [
-  { baseAltitude: 1500, topAltitude: 2700, coverage: 0, wind: { east: 6, north: 2 } },
+  {
+    baseAltitude: 1500,
+    topAltitude: 2700,
+    coverage: 0,
+    densityGrowth: 0.6, // bases are thin: dense ones are ruled before mountains
+    wind: { east: 6, north: 2 }
+  },
   {
     ...deckForm,
     coverage: 0,
@@ -197,14 +239,16 @@ export class WeatherBlend {
     shadow: boolean,
     falls: boolean
   ): void {
-    const { cumulus, cirrus, base, deckBase, tall, rain, snow } = this.current
-    const rates = [rain * SHAFTS[0], rain * SHAFTS[1] + snow, 0]
+    const { cumulus, cirrus, base, deckBase, deckDensity, deckRain, tall, rain, snow } =
+      this.current
+    const rates = [rain * SHAFTS[0], rain * deckRain * SHAFTS[1] + snow, 0]
     // The deck and banks of fog are one layer: one goes before the other comes.
     const foggy = this.#fog(hasMist)
     layers.at(0).set({ baseAltitude: base, topAltitude: base + tall })
     const rise = deckBase - deckForm.baseAltitude
     const [baseAltitude, topAltitude] = [deckBase, deckForm.topAltitude + rise]
-    layers.at(1).set(foggy > 0 ? fogForm : { ...deckForm, baseAltitude, topAltitude })
+    const deck = { ...deckForm, baseAltitude, topAltitude, density: deckDensity }
+    layers.at(1).set(foggy > 0 ? fogForm : deck)
     const covers = [cumulus, Math.abs(foggy), cirrus]
     // Snow falls to the ground, rain melts high up; from one to the other the level goes with what falls.
     const freezingLevel = snow > 0 ? (FREEZING * rain) / (rain + SNOW_AS_RAIN * snow) : FREEZING
