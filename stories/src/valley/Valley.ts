@@ -101,6 +101,8 @@ export class Valley {
   readonly cycle: DayCycle
   readonly exposure
   readonly pipeline: RenderPipeline
+  /** Lightning, if it was asked for. */
+  readonly storm: Lightning | undefined
   readonly #renderer: WebGPURenderer
   readonly #state: ValleyState
   readonly #weather: WeatherBlend
@@ -121,7 +123,6 @@ export class Valley {
   readonly #water
   readonly #node
   readonly #shafts
-  readonly #storm: Lightning | undefined
   readonly #targets: FactorTargets
   readonly #cascades
   readonly #cascadeTurns: CascadeTurns
@@ -164,7 +165,7 @@ export class Valley {
 
     this.#node = node
     this.#shafts = shafts
-    if (state.flashes) this.#storm = valleyFlashes(scene, node)
+    if (state.flashes) this.storm = valleyFlashes(scene, node)
     this.exposure = exposure
     // Coarse: the lake mirrors the picture itself where it can.
     const overlay = cloudEnvironment(node, { size: 128 })
@@ -179,7 +180,7 @@ export class Valley {
     this.#setDay(state.hour)
     this.#dispose.push(
       () => this.pipeline.dispose(),
-      () => this.#storm?.dispose(),
+      () => this.storm?.dispose(),
       ...[this.#finish, exposure, overlay, this.#falling, this.#environment, node, shafts].map(
         each => () => each.dispose()
       ),
@@ -266,7 +267,7 @@ export class Valley {
     const { clouds, cloudShadows, precipitation, quality } = this.#state
     this.#node.quality = this.#weather.qualityOf(quality, this.#state.mist)
     this.#falling.set(this.#falls(), atOnce)
-    this.#storm?.set({ enabled: clouds && flashes > 0, rate: flashes })
+    this.storm?.set({ enabled: clouds && flashes > 0, rate: flashes })
     this.#weather.apply(this.#layers, clouds, this.#state.mist, cloudShadows, precipitation)
     // In steps: the tables are made anew for each.
     const stepped = Math.round(turbidity * 4) / 4
