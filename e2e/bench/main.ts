@@ -15,7 +15,7 @@ import { timeShells } from './shell'
 import { skyLine, timeSky } from './sky'
 import { median } from './statistics'
 import { terrainLine, timeTerrain, timeVegetation, vegetationLine } from './terrain'
-import { timeValley, valleyLines } from './valley'
+import { timeValley } from './valley'
 
 const { values, positionals } = parseArgs({
   allowPositionals: true,
@@ -24,6 +24,7 @@ const { values, positionals } = parseArgs({
     frames: { type: 'string', default: '40' },
     size: { type: 'string', default: '1920x1080' },
     only: { type: 'string', multiple: true, default: [] },
+    rows: { type: 'string', multiple: true, default: [] }, // of the valley, by how their names begin
     out: { type: 'string' }
   }
 })
@@ -82,8 +83,7 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
     return { lightning: costs }
   },
   async valley() {
-    const valley = await timeValley(device, size, frames)
-    log(valleyLines(valley))
+    const valley = await timeValley(device, size, frames, values.rows, log)
     return { valley }
   },
   async terrain() {
