@@ -14,6 +14,7 @@ import { shaftLine, timeShafts } from './shafts'
 import { timeShells } from './shell'
 import { skyLine, timeSky } from './sky'
 import { median } from './statistics'
+import { measureSwitches } from './switches'
 import { terrainLine, timeTerrain, timeVegetation, vegetationLine } from './terrain'
 import { timeValley } from './valley'
 
@@ -24,7 +25,8 @@ const { values, positionals } = parseArgs({
     frames: { type: 'string', default: '40' },
     size: { type: 'string', default: '1920x1080' },
     only: { type: 'string', multiple: true, default: [] },
-    rows: { type: 'string', multiple: true, default: [] }, // of the valley, by how their names begin
+    // Of the valley by how their names begin, of switches by name.
+    rows: { type: 'string', multiple: true, default: [] },
     out: { type: 'string' }
   }
 })
@@ -107,6 +109,9 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
     log(crackLines(search))
     return { cracks: search }
   },
+  async switches() {
+    return { switches: await measureSwitches(device, values.rows, log) }
+  },
   async shell() {
     const shells = await timeShells(device, size, frames)
     for (const { model, outsideMs, insideMs } of shells) {
@@ -157,8 +162,9 @@ for (const name of only) {
 }
 log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
 const result: Record<string, unknown> = { device: device.name }
-// All of `clouds` has the showers, too; cracks are no figure of cost, and take minutes: only when asked for.
-const all = Object.keys(parts).filter(name => name !== 'showers' && name !== 'cracks')
+/** Parts for which one asks: all of `clouds` has the showers, too; the others are no figures of cost. */
+const ASKED = ['showers', 'cracks', 'switches']
+const all = Object.keys(parts).filter(name => !ASKED.includes(name))
 for (const name of only.length > 0 ? only : all) {
   Object.assign(result, await parts[name]())
 }
