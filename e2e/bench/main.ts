@@ -163,8 +163,8 @@ for (const name of only) {
 log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
 const result: Record<string, unknown> = { device: device.name }
 /** Parts for which one asks: all of `clouds` has the showers, too; the others are no figures of cost. */
-const ASKED = ['showers', 'cracks', 'switches']
-const all = Object.keys(parts).filter(name => !ASKED.includes(name))
+const ASKED = new Set(['showers', 'cracks', 'switches'])
+const all = Object.keys(parts).filter(name => !ASKED.has(name))
 for (const name of only.length > 0 ? only : all) {
   Object.assign(result, await parts[name]())
 }

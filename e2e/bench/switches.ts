@@ -28,7 +28,7 @@ const DARK = { date: Date.UTC(2026, 5, 15), hour: 0 } as const
 interface Switch {
   name: keyof ValleyState
   /** Its other position; by default the opposite of the first. */
-  value?: ValleyState[keyof ValleyState]
+  value?: string
   state?: Partial<ValleyState>
   view?: ValleyName
   isTurning?: true
@@ -66,7 +66,7 @@ const SWITCHES: readonly Switch[] = [
   { name: 'quality', value: 'high', state: { quality: 'medium' }, least: 0.01 }
 ]
 
-/** What a switch changes in the picture of the valley: shares of the pixels. */
+/** Shares of the pixels of the valley's picture that a switch changes. */
 export interface SwitchChange {
   name: string
   changed: number
@@ -135,7 +135,7 @@ export async function measureSwitches(
     const { name, value, least, state } = each
     if (only.length > 0 && !only.includes(name)) continue
     const before: ValleyState = { ...base, ...state }
-    const after = { ...before, [name]: value ?? before[name] !== true } as ValleyState
+    const after: ValleyState = { ...before, [name]: value ?? before[name] !== true }
     // Another hour first: an exposure that stays must stand out.
     if (name === 'autoExposure') await draw(base, each)
     const pictures: Uint8Array[] = []
@@ -144,7 +144,7 @@ export async function measureSwitches(
     const [first, second, third] = pictures
     const noise = name === 'autoExposure' ? [second, third] : [first, third]
     const change = {
-      name: value === undefined ? name : `${name} ${String(value)}`,
+      name: value === undefined ? name : `${name} ${value}`,
       changed: changedShare(first, second),
       noise: changedShare(noise[0], noise[1]),
       least

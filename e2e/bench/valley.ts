@@ -79,7 +79,7 @@ const ROWS: readonly Row[] = [
 /** Time over which the picture gathers a flash's light [s], and its distance [m]. */
 const FLASH = { seconds: 0.5, distance: 3000 } as const
 
-/** What the rows at rest leave out. */
+/** Line about ambient occlusion, which rows at rest leave out. */
 const AT_REST =
   ' ambient occlusion is drawn anew only while the camera or things move: at rest it costs what the land reads of it'
 

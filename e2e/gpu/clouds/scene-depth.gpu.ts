@@ -2,7 +2,7 @@ import { aerialPerspective } from '@welkin/atmosphere'
 import { clouds } from '@welkin/clouds'
 import { BoxGeometry, Mesh, MeshBasicMaterial } from 'three'
 import { convertToTexture, pass, vec4 } from 'three/tsl'
-import { RenderPipeline, type Node } from 'three/webgpu'
+import { RenderPipeline } from 'three/webgpu'
 import { drawToFloat, expectLight } from '../harness/atmosphere'
 import { coarse, inFog, middle, viewSize } from '../harness/cloud-view'
 import { expectClose, expectTrue } from '../harness/expect'
@@ -176,7 +176,7 @@ gpuTest(
       const { node } = view
       const layer = node.field.layers.at(0)
       node.set({ quality: { ...coarse, block: 1 }, accumulates: false })
-      node.colorNode = convertToTexture(node.colorNode as Node<'vec4'>)
+      node.colorNode = convertToTexture(node.colorNode)
       layer.set({ coverage: 0 })
       const first = await view.draw()
       layer.set({ coverage: 1, density: 0.1 })

@@ -6,7 +6,7 @@ import { SIGHTS, type SightName } from './places'
 import { groundedFrame, placeInWords, standOf, viewOf, type Stand } from './stand'
 import { unlitTiles, type TileSource, type UnlitTiles } from './unlitTiles'
 
-/** What tiles need of the scene that shows them. */
+/** Camera of the scene that shows tiles, and ways to move it. */
 export interface TileScene {
   readonly camera: PerspectiveCamera
   /** Place that was chosen, of those of the whole world. */
