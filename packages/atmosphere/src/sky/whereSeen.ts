@@ -5,7 +5,7 @@ import type { Bool } from '../tsl-types'
 
 /** Context of the nodes of a picture, by {@link whereSeen}, and the material that is built. */
 interface SeenContext {
-  welkinIsSeen?: Bool
+  welkinSeen?: Bool
   welkinSeenIn?: Material
   material: Material
 }
@@ -25,13 +25,13 @@ const contextOf = (builder: NodeBuilder): SeenContext =>
 export const whereSeen = (picture: Node, isSeen: Node, builder: NodeBuilder): Node =>
   // Apart from the same picture elsewhere in the shader, which is drawn in full.
   context(picture, {
-    welkinIsSeen: isSeen,
+    welkinSeen: isSeen,
     welkinSeenIn: contextOf(builder).material
   }).isolate()
 
 /** True where the picture that is built is seen; null if it is everywhere. */
 export const seenIn = (builder: NodeBuilder): Bool | null => {
-  const { welkinIsSeen, welkinSeenIn, material } = contextOf(builder)
+  const { welkinSeen, welkinSeenIn, material } = contextOf(builder)
   // Three hands the context on to the shaders of textures that the picture is made of.
-  return welkinSeenIn === material ? welkinIsSeen! : null
+  return welkinSeenIn === material ? welkinSeen! : null
 }

@@ -147,10 +147,10 @@ export class CloudEnvironment implements SkyOverlay {
   }
 
   #state(): CloudState {
-    const { atmosphere, field, light, shadows } = this.clouds
+    const { field, light, shadows } = this.clouds
     const { moonDirection, illuminance, moonIrradiance } = field.night
     // At dusk the sun outshines the moon, however fast that moves.
-    const isMoonlit = shadows.source !== atmosphere.sun
+    const moonlight = shadows.nodes.isMoonlit.value * moonIrradiance.value.y
     return {
       inputs: [
         light.texture.version,
@@ -160,7 +160,7 @@ export class CloudEnvironment implements SkyOverlay {
         ...[...field.layers].map(({ parameters }) => parameters)
       ],
       rotations: field.rotations.map(rotation => rotation.clone()),
-      moonlight: moonDirection.value.clone().multiplyScalar(isMoonlit ? moonIrradiance.value.y : 0)
+      moonlight: moonDirection.value.clone().multiplyScalar(moonlight)
     }
   }
 
