@@ -3,15 +3,10 @@ import { context } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Bool } from '../tsl-types'
 
-/** Context of the nodes of a picture, by {@link whereSeen}, and the material that is built. */
-interface SeenContext {
-  welkinSeen?: Bool
-  welkinSeenIn?: Material
-  material: Material
+/** Builder whose context is that of a picture by {@link whereSeen}, or not, and has the material that is built. */
+type SeenBuilder = NodeBuilder & {
+  context: { welkinSeen?: Bool; welkinSeenIn?: Material; material: Material }
 }
-
-const contextOf = (builder: NodeBuilder): SeenContext =>
-  (builder as unknown as { context: SeenContext }).context
 
 /**
  * A picture in pixels where it is seen: in others an `AerialPerspectiveNode` leaves air and sky out, and the colour means
@@ -26,12 +21,12 @@ export const whereSeen = (picture: Node, isSeen: Node, builder: NodeBuilder): No
   // Apart from the same picture elsewhere in the shader, which is drawn in full.
   context(picture, {
     welkinSeen: isSeen,
-    welkinSeenIn: contextOf(builder).material
+    welkinSeenIn: (builder as SeenBuilder).context.material
   }).isolate()
 
 /** True where the picture that is built is seen; null if it is everywhere. */
 export const seenIn = (builder: NodeBuilder): Bool | null => {
-  const { welkinSeen, welkinSeenIn, material } = contextOf(builder)
+  const { welkinSeen, welkinSeenIn, material } = (builder as SeenBuilder).context
   // Three hands the context on to the shaders of textures that the picture is made of.
   return welkinSeenIn === material ? welkinSeen! : null
 }
