@@ -59,7 +59,7 @@ const SWITCHES: readonly Switch[] = [
   { name: 'depthOfField', least: 0.01 },
   { name: 'motionBlur', isTurning: true, least: 0.01 },
   { name: 'antialiasing', value: 'fxaa', least: 0.005 },
-  { name: 'antialiasing', value: 'smaa', least: 0.005 },
+  // SMAA asks for a browser's `Image`.
   { name: 'antialiasing', value: 'traa', least: 0.005 },
   { name: 'antialiasing', value: 'taau', least: 0.01 },
   { name: 'quality', value: 'low', state: { quality: 'medium' }, least: 0.01 },
@@ -134,15 +134,17 @@ export async function measureSwitches(
   for (const each of SWITCHES) {
     const { name, value, least, state } = each
     if (only.length > 0 && !only.includes(name)) continue
-    const before: ValleyState = { ...base, ...state }
+    const isOfExposure = name === 'autoExposure'
+    const asked: ValleyState = { ...base, ...state }
+    // An exposure that stays must stand out: it is that of another hour. Others must not hide behind one that adapts.
+    await draw(isOfExposure ? base : asked, each)
+    const before: ValleyState = isOfExposure ? asked : { ...asked, autoExposure: false }
     const after: ValleyState = { ...before, [name]: value ?? before[name] !== true }
-    // Another hour first: an exposure that stays must stand out.
-    if (name === 'autoExposure') await draw(base, each)
+    const states = isOfExposure ? [after, before, before] : [before, after, before]
     const pictures: Uint8Array[] = []
-    for (const next of name === 'autoExposure' ? [after, before, before] : [before, after, before])
-      pictures.push(await draw(next, each))
+    for (const next of states) pictures.push(await draw(next, each))
     const [first, second, third] = pictures
-    const noise = name === 'autoExposure' ? [second, third] : [first, third]
+    const noise = isOfExposure ? [second, third] : [first, third]
     const change = {
       name: value === undefined ? name : `${name} ${value}`,
       changed: changedShare(first, second),
