@@ -5,7 +5,7 @@ import type { Bool } from '../tsl-types'
 
 /** Builder whose context is that of a picture by {@link whereSeen}, or not, and has the material that is built. */
 type SeenBuilder = NodeBuilder & {
-  context: { welkinSeen?: Bool; welkinSeenIn?: Material; material: Material }
+  context: { welkinSeen?: Bool; welkinBy?: Material; material: Material }
 }
 
 /**
@@ -21,12 +21,12 @@ export const whereSeen = (picture: Node, isSeen: Node, builder: NodeBuilder): No
   // Apart from the same picture elsewhere in the shader, which is drawn in full.
   context(picture, {
     welkinSeen: isSeen,
-    welkinSeenIn: (builder as SeenBuilder).context.material
+    welkinBy: (builder as SeenBuilder).context.material
   }).isolate()
 
 /** True where the picture that is built is seen; null if it is everywhere. */
 export const seenIn = (builder: NodeBuilder): Bool | null => {
-  const { welkinSeen, welkinSeenIn, material } = (builder as SeenBuilder).context
+  const { welkinSeen, welkinBy, material } = (builder as SeenBuilder).context
   // Three hands the context on to the shaders of textures that the picture is made of.
-  return welkinSeenIn === material ? welkinSeen! : null
+  return welkinBy === material ? welkinSeen! : null
 }
