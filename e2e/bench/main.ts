@@ -14,8 +14,9 @@ import { shaftLine, timeShafts } from './shafts'
 import { timeShells } from './shell'
 import { skyLine, timeSky } from './sky'
 import { median } from './statistics'
+import { measureSwitches } from './switches'
 import { terrainLine, timeTerrain, timeVegetation, vegetationLine } from './terrain'
-import { timeValley, valleyLines } from './valley'
+import { timeValley } from './valley'
 
 const { values, positionals } = parseArgs({
   allowPositionals: true,
@@ -24,6 +25,8 @@ const { values, positionals } = parseArgs({
     frames: { type: 'string', default: '40' },
     size: { type: 'string', default: '1920x1080' },
     only: { type: 'string', multiple: true, default: [] },
+    // Of the valley by how their names begin, of switches by name.
+    rows: { type: 'string', multiple: true, default: [] },
     out: { type: 'string' }
   }
 })
@@ -82,8 +85,7 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
     return { lightning: costs }
   },
   async valley() {
-    const valley = await timeValley(device, size, frames)
-    log(valleyLines(valley))
+    const valley = await timeValley(device, size, frames, values.rows, log)
     return { valley }
   },
   async terrain() {
@@ -106,6 +108,9 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
     const search = await findCracks(device, 10_000, 95, log)
     log(crackLines(search))
     return { cracks: search }
+  },
+  async switches() {
+    return { switches: await measureSwitches(device, values.rows, log) }
   },
   async shell() {
     const shells = await timeShells(device, size, frames)
@@ -157,8 +162,9 @@ for (const name of only) {
 }
 log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
 const result: Record<string, unknown> = { device: device.name }
-// All of `clouds` has the showers, too; cracks are no figure of cost, and take minutes: only when asked for.
-const all = Object.keys(parts).filter(name => name !== 'showers' && name !== 'cracks')
+/** Parts for which one asks: all of `clouds` has the showers, too; the others are no figures of cost. */
+const ASKED = new Set(['showers', 'cracks', 'switches'])
+const all = Object.keys(parts).filter(name => !ASKED.has(name))
 for (const name of only.length > 0 ? only : all) {
   Object.assign(result, await parts[name]())
 }

@@ -1,5 +1,5 @@
 import { photographicToneMapping } from '@welkin/atmosphere'
-import { CustomToneMapping, RenderTarget } from 'three'
+import { CustomToneMapping, RenderTarget, Vector3 } from 'three'
 import { PassTimes, type PassTime } from '../../stories/src/valley/PassTimes'
 import { openingState } from '../../stories/src/valley/openingState'
 import { sharesOf } from '../../stories/src/valley/shares'
@@ -9,7 +9,7 @@ import { median } from './statistics'
 
 const WARM_UP = 30
 /** Frames of a measurement at least: shadows of clouds, the mirrored sky and the air's tables are drawn anew every 30 to 60 of them. */
-const LEAST_FRAMES = 120
+const LEAST_FRAMES = 60
 /** Time between two frames [s]. */
 const STEP = 1 / 60
 
@@ -32,27 +32,61 @@ const FULL = { occlusion: true, motionBlur: true, bloom: false } as const
 /** The full moon stands high. */
 const WINTER = { date: Date.UTC(2026, 11, 24), hour: 22 } as const
 
+const MIST = { ...FULL, weather: 'mist' } as const
+const SNOW = { ...FULL, weather: 'snow' } as const
+const STORM = { ...FULL, weather: 'storm' } as const
+
+/** Conditions of a measurement. */
+interface Conditions {
+  changes: Partial<ValleyState>
+  turn?: Turn
+  /** A flash to the ground is seen all the time. */
+  flash?: true
+}
+
+interface Row extends Conditions {
+  name: string
+}
+
 /** Weathers and hours with all that is on, what one of them costs as the story opens, and while the camera turns. */
-const ROWS: readonly (readonly [name: string, changes: Partial<ValleyState>, turn?: Turn])[] = [
-  ['fair, as the story opens, without bloom', { bloom: false }],
-  ['fair', FULL],
-  ['fair, while the camera turns to and fro', FULL, 'fro'],
-  ['fair, while the camera turns on', FULL, 'on'],
-  ['broken', { ...FULL, weather: 'broken' }],
-  ['overcast', { ...FULL, weather: 'overcast' }],
-  ['mist', { ...FULL, weather: 'mist' }],
-  ['shower', { ...FULL, weather: 'shower' }],
-  ['snow', { ...FULL, weather: 'snow' }],
-  ['storm', { ...FULL, weather: 'storm' }],
-  ['dusk', { ...FULL, ...DUSK }],
-  ['night', { ...FULL, ...WINTER }],
-  ['night, snow', { ...FULL, ...WINTER, weather: 'snow' }]
+const ROWS: readonly Row[] = [
+  { name: 'fair, as the story opens, without bloom', changes: { bloom: false } },
+  { name: 'fair', changes: FULL },
+  { name: 'fair, turning to and fro', changes: FULL, turn: 'fro' },
+  { name: 'fair, turning on', changes: FULL, turn: 'on' },
+  { name: 'broken', changes: { ...FULL, weather: 'broken' } },
+  { name: 'overcast', changes: { ...FULL, weather: 'overcast' } },
+  { name: 'mist', changes: MIST },
+  { name: 'shower', changes: { ...FULL, weather: 'shower' } },
+  { name: 'snow', changes: SNOW },
+  { name: 'storm', changes: STORM },
+  { name: 'storm, turning', changes: STORM, turn: 'on' },
+  { name: 'storm, a flash', changes: STORM, flash: true },
+  { name: 'dusk', changes: { ...FULL, ...DUSK } },
+  { name: 'mist at dusk', changes: { ...MIST, ...DUSK } },
+  { name: 'snow at dusk', changes: { ...SNOW, ...DUSK } },
+  { name: 'storm at dusk', changes: { ...STORM, ...DUSK } },
+  {
+    name: 'storm at dusk, turning, a flash',
+    changes: { ...STORM, ...DUSK },
+    turn: 'on',
+    flash: true
+  },
+  { name: 'night', changes: { ...FULL, ...WINTER } },
+  { name: 'night, snow', changes: { ...SNOW, ...WINTER } }
 ]
+
+/** Time over which the picture gathers a flash's light [s], and its distance [m]. */
+const FLASH = { seconds: 0.5, distance: 3000 } as const
+
+/** Line about ambient occlusion, which rows at rest leave out. */
+const AT_REST =
+  ' ambient occlusion is drawn anew only while the camera or things move: at rest it costs what the land reads of it'
 
 /** GPU times of the valley at medium quality [ms]. */
 export interface ValleyCost {
-  /** A frame as the story opens, with bloom: mean. */
-  totalMs: number
+  /** Shares of a frame as the story opens, with bloom: means. */
+  opening: PassTime[]
   /** Time of what features draw in each weather, by timestamps of their passes. */
   rows: [name: string, features: PassTime[]][]
   /** Time that is saved with a part off. */
@@ -61,13 +95,36 @@ export interface ValleyCost {
   cpuMs: number
 }
 
+/** Has a flash to the ground stay in sight of the camera, at its brightest, or has none. */
+function holdFlash({ storm, camera }: Valley, isHeld: boolean): void {
+  if (storm === undefined) throw new Error('valley: no lightning')
+  // Its clock stands: no flash begins of itself, and one of before is over.
+  storm.time = (storm.time ?? 0) + 60
+  if (!isHeld) return
+  camera.updateMatrixWorld()
+  const at = new Vector3(0, 0, -FLASH.distance).applyMatrix4(camera.matrixWorld)
+  const show = (): void => {
+    storm.time = (storm.time ?? 0) + FLASH.seconds
+    storm.removeEventListener('strike', show)
+  }
+  storm.addEventListener('strike', show)
+  storm.strike({ kind: 'ground', at })
+}
+
 const sumOf = (shares: PassTime[]): number => shares.reduce((total, [, ms]) => total + ms, 0)
 
-/** Times the valley of the story, on its clock. */
+/**
+ * Times the valley of the story, on its clock.
+ *
+ * @param only - Rows that are timed, by how their names begin; all of them, and what parts cost, if there are none.
+ * @param log - Takes lines of a report, as soon as they are known.
+ */
 export async function timeValley(
   device: HeadlessDevice,
   size: readonly [number, number],
-  frames: number
+  frames: number,
+  only: readonly string[],
+  log: (text: string) => void
 ): Promise<ValleyCost> {
   const renderer = await device.renderer(...size, { reversedDepthBuffer: true })
   renderer.highPrecision = true
@@ -76,27 +133,27 @@ export async function timeValley(
   renderer.toneMapping = CustomToneMapping
   const times = new PassTimes()
   renderer.inspector = times
-  const valley = new Valley(renderer, openingState)
+  // With lightning, for which the story asks first.
+  const valley = new Valley(renderer, { ...openingState, flashes: true })
+  Object.assign(valley.storm ?? {}, { limit: null, exposure: FLASH.seconds })
   await valley.bake(renderer)
-  valley.lookFrom('village')
   valley.camera.aspect = size[0] / size[1]
   valley.camera.updateProjectionMatrix()
   // As the story's canvas, it has no depth.
   const target = new RenderTarget(...size, { depthBuffer: false })
   let time = 0
+  const often = Math.max(frames, LEAST_FRAMES)
 
-  const measure = async (
-    changes: Partial<ValleyState>,
-    frames: number,
-    turn?: Turn
-  ): Promise<[PassTime[], number]> => {
-    const state = { ...openingState, ...changes }
+  /** Shares of a frame [ms], and the median time to submit it. */
+  const measure = async ({ changes, turn, flash }: Conditions): Promise<[PassTime[], number]> => {
+    const state = { ...openingState, flashes: true, ...changes }
     valley.set(state, true)
     valley.cycle.hour = state.hour // the clock has gone on
     valley.lookFrom('village')
+    holdFlash(valley, flash === true)
     const passes: PassTime[] = []
     const cpu: number[] = []
-    for (let frame = 0; frame < WARM_UP + frames; frame++) {
+    for (let frame = 0; frame < WARM_UP + often; frame++) {
       nextFrame()
       valley.time = time += STEP
       const isBack = turn === 'fro' && frame % (2 * FRO) >= FRO
@@ -109,35 +166,32 @@ export async function timeValley(
       const read = await times.read(renderer)
       if (frame >= WARM_UP) passes.push(...read.passes)
     }
-    const shares = sharesOf(passes, state).map(([name, ms]) => [name, ms / frames] as const)
+    if (valley.storm?.isFlashing !== (flash === true)) throw new Error('valley: flash is amiss')
+    const shares = sharesOf(passes, state).map(([name, ms]) => [name, ms / often] as const)
     return [shares, median(cpu.slice(WARM_UP))]
   }
-  const often = Math.max(frames, LEAST_FRAMES)
-  const [features, cpuMs] = await measure({}, often)
-  const totalMs = sumOf(features)
+  const list = (shares: PassTime[]): string[] =>
+    shares.map(([name, ms]) => `  ${name.padEnd(36)} ${ms.toFixed(2)} ms`)
+  const [opening, cpuMs] = await measure({ changes: {} })
+  log(
+    `valley at medium, as the story opens   ${sumOf(opening).toFixed(2)} ms; CPU ${cpuMs.toFixed(2)} ms`
+  )
   const rows: ValleyCost['rows'] = []
-  for (const [name, changes, turn] of ROWS) {
-    rows.push([name, (await measure(changes, often, turn))[0]])
+  for (const row of ROWS) {
+    if (only.length > 0 && !only.some(name => row.name.startsWith(name))) continue
+    const [shares] = await measure(row)
+    log([` ${row.name}   ${sumOf(shares).toFixed(2)} ms`, ...list(shares)].join('\n'))
+    rows.push([row.name, shares])
   }
   const parts: PassTime[] = []
-  for (const part of PARTS) {
-    parts.push([part, totalMs - sumOf((await measure({ [part]: false }, often))[0])])
+  for (const part of only.length > 0 ? [] : PARTS) {
+    const [without] = await measure({ changes: { [part]: false } })
+    parts.push([part, sumOf(opening) - sumOf(without)])
   }
+  if (parts.length > 0) log([' saved with a part off', ...list(parts)].join('\n'))
+  log(AT_REST)
   valley.dispose()
   target.dispose()
   release(renderer)
-  return { totalMs, rows, parts, cpuMs }
-}
-
-/** Lines of a report. */
-export function valleyLines({ totalMs, rows, parts, cpuMs }: ValleyCost): string {
-  const list = (shares: PassTime[]): string =>
-    shares.map(([name, ms]) => `  ${name.padEnd(36)} ${ms.toFixed(2)} ms`).join('\n')
-  const inRows = rows.map(
-    ([name, features]) => ` ${name}   ${sumOf(features).toFixed(2)} ms\n${list(features)}`
-  )
-  return (
-    `valley at medium, as the story opens   ${totalMs.toFixed(2)} ms; CPU ${cpuMs.toFixed(2)} ms\n` +
-    `${inRows.join('\n')}\n saved with a part off\n${list(parts)}`
-  )
+  return { opening, rows, parts, cpuMs }
 }

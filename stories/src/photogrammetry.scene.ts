@@ -10,13 +10,13 @@ import { Group, Object3D, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { groundHeight } from './globe/groundHeight'
-import { loadTiles, tilesProgress } from './globe/loadTiles'
-import { flyToPlace, moveCamera } from './globe/places'
+import { flyToView, lookFrom } from './globe/places'
 import { aimShadow, prepareShadow } from './globe/sunShadow'
 import { Explorer } from './moving/Explorer'
 import { overlayOn } from './overlay'
-import { SIGHTS, type SightName } from './photogrammetry/places'
-import { unlitTiles, type TileSource, type UnlitTiles } from './photogrammetry/unlitTiles'
+import type { SightName } from './photogrammetry/places'
+import { ShownTiles } from './photogrammetry/ShownTiles'
+import type { TileSource } from './photogrammetry/unlitTiles'
 import { createRenderer, dateOf, exposureOf, fitToCanvas, frameClock } from './scene'
 import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
 
@@ -53,35 +53,37 @@ export async function createPhotogrammetry(
   // #endregion
   prepareShadow(sun)
 
-  const ground = new Group()
-  scene.add(ground)
   const note = args.frame ? undefined : overlayOn(canvas)
+  const group = new Group()
+  scene.add(group)
   const explorer = args.frame
     ? undefined
     : new Explorer(camera, canvas, {
-        groundAt: groundHeight(ground, new Object3D()),
+        groundAt: groundHeight(group, new Object3D()),
         upAt: (position, target) => Ellipsoid.WGS84.surfaceNormal(position, target),
         heightAt: position => Ellipsoid.WGS84.heightAt(position),
         pole: new Vector3(0, 0, 1)
       })
   const elapsed = frameClock(args.frame)
   const up = new Vector3()
-  const size = { width: 1, height: 1 }
-  let shown: UnlitTiles | undefined
   let ready: Promise<void> = Promise.resolve()
-  let loads = 0
-  /** True while the tiles on show are of the whole world, whose places one flies to. */
-  let isWorld = false
-  let reason = ''
-
-  const sourceOf = ({ url, key }: TileSource): TileSource | undefined =>
-    url === '' && key === '' ? undefined : { url, key }
 
   const prepare = (): void => {
     camera.updateMatrixWorld()
     fitGlobeCamera(camera, { depth: renderer.reversedDepthBuffer ? 'reversed' : 'standard' })
-    shown?.tiles.update()
+    tiles.update()
   }
+  const tiles = new ShownTiles(group, {
+    camera,
+    get place() {
+      return current.place
+    },
+    prepare,
+    goTo(view, flies) {
+      if (flies && explorer !== undefined) void flyToView(explorer, camera, view)
+      else lookFrom(camera, view)
+    }
+  })
   const draw = (): void => {
     prepare()
     const height = Ellipsoid.WGS84.heightAt(camera.position)
@@ -90,49 +92,22 @@ export async function createPhotogrammetry(
     pipeline.render()
   }
   const say = (): void => {
-    if (note === undefined || shown === undefined) return
-    const credits = shown.tiles.getAttributions().filter(({ type }) => type === 'string')
-    note.textContent = [reason, ...credits.map(({ value }) => String(value))].join('\n').trim()
+    if (note === undefined) return
+    note.textContent = tiles.text
     note.style.display = note.textContent === '' ? 'none' : ''
   }
-
-  /** Shows tiles of a source, or local ones if it has none to give. */
-  const show = (source: TileSource | undefined): void => {
-    const count = ++loads
-    shown?.dispose()
-    ground.clear()
-    isWorld = source !== undefined
-    const mine = (shown = unlitTiles(source))
-    ground.add(mine.tiles.group)
-    mine.tiles.setCamera(camera)
-    mine.tiles.setResolution(camera, size.width, size.height)
-    if (source === undefined) moveCamera(camera, SIGHTS.local)
-    else moveCamera(camera, SIGHTS[current.place])
-    const isOver = (): boolean => count !== loads
-    ready = loadTiles([mine.tiles], prepare, isOver).then(
-      async () => {
-        for (let i = 0; current.frame && !isOver() && i < STILL_FRAMES; i++) {
-          await new Promise(requestAnimationFrame)
-          draw()
-        }
-      },
-      (error: Error) => {
-        if (source === undefined) throw error
-        if (isOver()) return
-        reason = `These tiles could not be loaded, so these are local ones.\n${error.message}`
-        show(undefined)
+  let asked = 0
+  const ask = (): void => {
+    tiles.ask(current, { onLine: navigator.onLine, origin: location.origin })
+    const count = ++asked
+    ready = tiles.ready.then(async () => {
+      // Only what was asked for last is drawn.
+      for (let i = 0; current.frame && count === asked && i < STILL_FRAMES; i++) {
+        await new Promise(requestAnimationFrame)
+        draw()
       }
-    )
+    })
     ready.catch(() => {})
-  }
-  const showAsked = (): void => {
-    const source = sourceOf(current)
-    const isOnline = navigator.onLine || source?.url.startsWith(location.origin) === true
-    reason = ''
-    if (source === undefined)
-      reason = 'Local tiles: put a URL and a key into the controls for the world’s.'
-    else if (!isOnline) reason = 'No network: these are local tiles.'
-    show(isOnline ? source : undefined)
   }
 
   const apply = (): void => {
@@ -141,7 +116,7 @@ export async function createPhotogrammetry(
     lit.set({ strength: current.strength, albedo: current.albedo })
   }
   apply()
-  showAsked()
+  ask()
 
   return {
     renderer,
@@ -152,7 +127,7 @@ export async function createPhotogrammetry(
       return ready
     },
     get progress() {
-      return shown === undefined ? 0 : tilesProgress([shown.tiles])
+      return tiles.progress
     },
     render() {
       explorer?.update(elapsed())
@@ -161,24 +136,21 @@ export async function createPhotogrammetry(
     },
     resize(width, height, pixelRatio) {
       fitToCanvas(renderer, camera, width, height, pixelRatio)
-      Object.assign(size, { width: width * pixelRatio, height: height * pixelRatio })
-      if (current.frame) showAsked()
-      else shown?.tiles.setResolution(camera, size.width, size.height)
+      tiles.setSize(width * pixelRatio, height * pixelRatio)
+      if (current.frame) ask()
     },
     update(changes) {
       const { url, key, place } = current
       Object.assign(current, changes)
       apply()
       const isOther = url !== current.url || key !== current.key
-      if (!isOther && place === current.place) return
-      if (isOther || !isWorld || explorer === undefined) showAsked()
-      else void flyToPlace(explorer, camera, SIGHTS[current.place])
+      if (isOther || explorer === undefined) ask()
+      else if (place !== current.place) tiles.revisit()
     },
     dispose() {
-      loads++
       explorer?.dispose()
       note?.remove()
-      shown?.dispose()
+      tiles.dispose()
       pipeline.dispose()
       scenePass.dispose()
       lit.dispose()

@@ -13,12 +13,13 @@ const meta: Meta<PhotogrammetryArgs> = {
     url: {
       name: 'Tileset',
       description:
-        "URL of a tileset, or ion:NUMBER of one of Cesium's; empty with a key for Google's",
+        "URL of any tileset, shown where it stands, or ion:NUMBER of one of Cesium's; empty with a key for Google's",
       control: 'text'
     },
     key: { name: 'Key', description: 'Key or token that goes with it', control: 'text' },
     place: {
       name: 'Place',
+      description: 'In tiles of the whole world',
       ...choiceOf(SIGHTS)
     },
     strength: {

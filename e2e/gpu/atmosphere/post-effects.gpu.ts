@@ -8,9 +8,15 @@ import {
   Scene,
   SphereGeometry
 } from 'three'
-import { pass } from 'three/tsl'
-import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { builtinAOContext, float, pass, vec4 } from 'three/tsl'
+import { Node, NodeUpdateType, RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { recipes } from 'virtual:recipes'
+import {
+  FragmentPass,
+  outputs,
+  tableTarget
+} from '../../../packages/atmosphere/src/tables/FragmentPass'
+import type { Vec4 } from '../../../packages/atmosphere/src/tsl-types'
 import { drawToFloat, expectLight } from '../harness/atmosphere'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -157,3 +163,46 @@ gpuTest(
   },
   { backends: ['webgpu'] }
 )
+
+/** Ambient occlusion that counts how often it is drawn. */
+class CountedOcclusion extends Node<'float'> {
+  draws = 0
+
+  constructor() {
+    super('float')
+    this.updateBeforeType = NodeUpdateType.RENDER
+  }
+
+  override updateBefore(): undefined {
+    this.draws++
+  }
+
+  override setup(): Node {
+    return float(0.5)
+  }
+}
+
+// Else three would draw the scene for it, in the middle of a render of the same scene.
+gpuTest('tables that are drawn within a pass take none of its ambient occlusion', async t => {
+  const renderer = await t.createRenderer({ width: 1, height: 1 })
+  const occlusion = new CountedOcclusion()
+  const { value } = builtinAOContext(occlusion) as unknown as { value: object }
+  const { contextNode } = renderer as unknown as { contextNode: { value: object } }
+  Object.assign(contextNode.value, value)
+  const table = tableTarget('Test', 1, 1, 2)
+  const filling = new FragmentPass(
+    'Test',
+    outputs<[Vec4, Vec4]>(2, all => {
+      for (const each of all) each.assign(vec4(1))
+    })
+  )
+  filling.render(renderer, table)
+  expectTrue(occlusion.draws === 0, `occlusion was drawn ${occlusion.draws} times for a table`)
+  const scene = new Scene().add(new Mesh(new BoxGeometry(), new MeshStandardMaterial()))
+  const camera = new PerspectiveCamera()
+  camera.position.z = 2
+  renderer.render(scene, camera)
+  expectTrue(occlusion.draws === 1, `occlusion was drawn ${occlusion.draws} times for a box`)
+  filling.dispose()
+  table.dispose()
+})

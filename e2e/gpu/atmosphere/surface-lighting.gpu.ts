@@ -1,4 +1,11 @@
-import { Atmosphere, SkyLightProbe, SunDirectionalLight, surfaceLighting } from '@welkin/atmosphere'
+import {
+  Atmosphere,
+  SkyLightProbe,
+  SunDirectionalLight,
+  sunIlluminanceAt,
+  surfaceLighting
+} from '@welkin/atmosphere'
+import { CloudLayers, cloudShadow } from '@welkin/clouds'
 import { Ellipsoid } from '@welkin/geo'
 import {
   BoxGeometry,
@@ -14,7 +21,8 @@ import {
   PointLight,
   RedFormat,
   Scene,
-  SphereGeometry
+  SphereGeometry,
+  Vector3
 } from 'three'
 import { Fn, pass, texture, vec2, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
@@ -25,11 +33,16 @@ import {
   rayOf,
   type DepthPicture
 } from '../../../packages/atmosphere/test/twins/lights/depthNormal'
+import { depthToSun } from '../../../packages/clouds/test/twins/cloudShafts'
 import { drawToFloat, expectLight, relativeDifferences } from '../harness/atmosphere'
+import { radians, unseenClouds } from '../harness/cloud-shafts'
+import { fog, SparseNoise } from '../harness/cloud-view'
 import { expectClose, expectTrue } from '../harness/expect'
-import { gpuTest } from '../harness/gpu-test'
+import { gpuTest, takeFineShadows } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
+
+takeFineShadows()
 
 const size = { width: 128, height: 72 }
 
@@ -154,6 +167,88 @@ gpuTest(
     const i = 4 * (60 * size.width + 64)
     const middle = (picture.data[i] + relit.data[i]) / 2
     expectClose(half.data[i], middle, { relative: 1e-3 }, 'half the strength')
+    pipeline.dispose()
+    lighting.dispose()
+    scenePass.dispose()
+    atmosphere.dispose()
+  }
+)
+
+gpuTest(
+  'surfaceLighting lights by what waves of cloud let through of the sun, as a float64 march through them',
+  async t => {
+    const [elevation, height] = [35, 1000]
+    const seen = { width: 8, height: 24 }
+    const renderer = await t.createRenderer(seen)
+    renderer.shadowMap.enabled = true
+    // Above the equator, x is up, y east and z north in the clouds' space.
+    const atmosphere = new Atmosphere().setSunAngles(elevation, 0)
+    const scene = new Scene()
+    const color = new Color(0.6, 0.4, 0.2)
+    const ground = new Mesh(
+      new PlaneGeometry(1e4, 1e4).rotateX(-Math.PI / 2),
+      new MeshBasicMaterial({ color })
+    )
+    ground.receiveShadow = true
+    const sun = new SunDirectionalLight(atmosphere)
+    sun.castShadow = true
+    scene.add(ground, sun, sun.target)
+    const camera = new PerspectiveCamera(90, seen.width / seen.height, 100, 2000)
+    camera.position.set(0, height, 0)
+    camera.rotation.set(-Math.PI / 2, 0, 0)
+    camera.updateMatrixWorld()
+    const layers = new CloudLayers([{ ...fog, baseAltitude: 1200, topAltitude: 1800 }])
+    const [mean, wave] = [0.0015, (2 * Math.PI) / 3000]
+    const {
+      node,
+      draw: drawClouds,
+      dispose
+    } = await unseenClouds(
+      renderer,
+      { camera, atmosphere },
+      layers,
+      new SparseNoise(),
+      ({ offset }) => offset.z.mul(wave).sin().add(1).mul(mean)
+    )
+    Object.assign(sun.shadow, { shadowNode: cloudShadow(node) })
+    for (let i = 0; i < 3; i++) await drawClouds()
+
+    const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
+    const depth = scenePass.getTextureNode('depth')
+    const lighting = surfaceLighting(scenePass.getTextureNode(), depth, camera, [sun], {
+      albedo: 0.5
+    })
+    const pipeline = new RenderPipeline(renderer)
+    pipeline.outputColorTransform = false
+    pipeline.outputNode = lighting
+    await nextFrame()
+    const picture = await drawToFloat(renderer, () => pipeline.render())
+
+    const deck = {
+      planetRadius: atmosphere.parameters.bottomRadius,
+      base: 1200,
+      top: 1800,
+      extinction: (_up: number, _east: number, north: number) => mean * (1 + Math.sin(wave * north))
+    }
+    const { value: depthScale } = node.field.depthScale
+    const open = sunIlluminanceAt(atmosphere, new Vector3())
+    const reflected = (0.5 * atmosphere.luminanceScale * Math.sin(radians(elevation))) / Math.PI
+    const passing = Array.from({ length: seen.height }, (_, y) => {
+      const north = (1 - (2 * y + 1) / seen.height) * height
+      return Math.exp(-depthScale * depthToSun(deck, 0, north, radians(elevation)))
+    })
+    const errors = passing.flatMap((share, y) =>
+      color
+        .toArray()
+        .map((value, k) => picture.at(4, y)[k] / (value * reflected * open[k] * share) - 1)
+    )
+    const [least, most] = [Math.min(...errors), Math.max(...errors)]
+    t.note(
+      `passing ${Math.min(...passing).toFixed(3)} to ${Math.max(...passing).toFixed(3)}, off by ${least.toFixed(4)} to ${most.toFixed(4)}`
+    )
+    expectTrue(Math.max(...passing) > 2 * Math.min(...passing), 'there are shadows')
+    expectTrue(Math.max(-least, most) < 0.02, `light is off by ${least} to ${most}`)
+    dispose()
     pipeline.dispose()
     lighting.dispose()
     scenePass.dispose()

@@ -1,11 +1,11 @@
 import { aerialPerspective } from '@welkin/atmosphere'
 import { clouds } from '@welkin/clouds'
 import { BoxGeometry, Mesh, MeshBasicMaterial } from 'three'
-import { pass, vec4 } from 'three/tsl'
+import { convertToTexture, pass, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { drawToFloat, expectLight } from '../harness/atmosphere'
 import { coarse, inFog, middle, viewSize } from '../harness/cloud-view'
-import { expectTrue } from '../harness/expect'
+import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 
@@ -166,5 +166,39 @@ gpuTest(
       opaque.dispose()
     }),
   // Which depth there is, and what is laid over what, is decided without a backend.
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
+  'air in a texture is whole in the first frame, and in the first that clouds no longer hide',
+  t =>
+    inFog(t, async view => {
+      const { node } = view
+      const layer = node.field.layers.at(0)
+      node.set({ quality: { ...coarse, block: 1 }, accumulates: false })
+      node.colorNode = convertToTexture(node.colorNode)
+      layer.set({ coverage: 0 })
+      const first = await view.draw()
+      layer.set({ coverage: 1, density: 0.1 })
+      await view.draw(2)
+      layer.set({ coverage: 0 })
+      const after = await view.draw()
+      const settled = await view.draw(2)
+      for (let i = 0; i < settled.data.length; i++) {
+        for (const [name, { data }] of [
+          ['first', first],
+          ['after clouds', after]
+        ] as const) {
+          expectClose(
+            data[i],
+            settled.data[i],
+            { relative: 0.01, absolute: 1e-4 },
+            `${name}: number ${i}`
+          )
+        }
+      }
+      expectTrue(middle(settled) > 0.05, `the sky is dark: ${middle(settled)}`)
+    }),
+  // What is built is the same on both.
   { backends: ['webgpu'] }
 )

@@ -69,7 +69,7 @@ export function lookAt({ camera }: Stage, view: number): void {
 /** Clouds that are drawn for their shadow maps, by a camera of their own, and not seen. */
 export async function unseenClouds(
   renderer: WebGPURenderer,
-  { camera: { position }, atmosphere }: Stage,
+  { camera: { position }, atmosphere }: Pick<Stage, 'camera' | 'atmosphere'>,
   layers: CloudLayers,
   noise: CloudNoise,
   extinction?: CloudsOptions['extinction'],

@@ -104,19 +104,44 @@ export function moveCamera(camera: PerspectiveCamera, place: Place): Perspective
   return camera
 }
 
+/** Position, and unit vector of the direction, of a camera in a world that is ECEF. */
+export interface View {
+  readonly position: Vector3
+  readonly direction: Vector3
+}
+
+/** View of a place. */
+export function viewAt(place: Place): View {
+  const camera = moveCamera(new PerspectiveCamera(), place)
+  return { position: camera.position, direction: camera.getWorldDirection(new Vector3()) }
+}
+
+/** Has a camera look from a view, upright. */
+export function lookFrom(camera: PerspectiveCamera, { position, direction }: View): void {
+  camera.position.copy(position)
+  Ellipsoid.WGS84.surfaceNormal(position, camera.up)
+  camera.lookAt(forward.copy(position).add(direction))
+  camera.updateMatrixWorld()
+}
+
 /**
- * Flies to a place of a world that is ECEF, the longer the farther it is.
+ * Flies to a view, the longer the farther it is.
  *
  * @param camera - That of the explorer.
  * @returns Promise that settles on arrival, or when the flight is broken off.
  */
-export function flyToPlace(
+export function flyToView(
+  explorer: Explorer,
+  camera: PerspectiveCamera,
+  view: View
+): Promise<void> {
+  const distance = camera.position.distanceTo(view.position)
+  return explorer.flyTo(view, 1 + 0.5 * Math.log10(1 + distance))
+}
+
+/** Flies to a place of a world that is ECEF: see {@link flyToView}. */
+export const flyToPlace = (
   explorer: Explorer,
   camera: PerspectiveCamera,
   place: Place
-): Promise<void> {
-  const aim = moveCamera(new PerspectiveCamera(), place)
-  const direction = aim.getWorldDirection(new Vector3())
-  const distance = camera.position.distanceTo(aim.position)
-  return explorer.flyTo({ position: aim.position, direction }, 1 + 0.5 * Math.log10(1 + distance))
-}
+): Promise<void> => flyToView(explorer, camera, viewAt(place))

@@ -14,7 +14,7 @@ import { MathUtils, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
 import { EYE_HEIGHT } from '../moving/Walk'
-import { valleyAir } from '../valleyAir'
+import { valleyAir, type ValleyAir } from '../valleyAir'
 import { ValleyFinish, type ValleyEffects } from './finish'
 import { ValleyPrecipitation } from './falling'
 import {
@@ -100,7 +100,11 @@ export class Valley {
   readonly atmosphere: Atmosphere
   readonly cycle: DayCycle
   readonly exposure
+  /** Sky, light and clouds. */
+  readonly air: ValleyAir
   readonly pipeline: RenderPipeline
+  /** Lightning, if it was asked for. */
+  readonly storm: Lightning | undefined
   readonly #renderer: WebGPURenderer
   readonly #state: ValleyState
   readonly #weather: WeatherBlend
@@ -114,11 +118,7 @@ export class Valley {
   readonly #village = createVillage(groundHeight, VILLAGE, this.#lamps, this.#falling.water)
   readonly #mirror: LakeMirror
   readonly #water
-  readonly #node
-  readonly #shafts
-  readonly #storm: Lightning | undefined
   readonly #targets: FactorTargets
-  readonly #cascades
   readonly #cascadeTurns: CascadeTurns
   readonly #moonShadow: MoonShadow
   readonly #moonlights
@@ -138,8 +138,8 @@ export class Valley {
     const { scene, camera } = this
     const sky = [...this.#glows, this.#moon] as const
     const air = valleyAir(scene, camera, this.#layers, state.quality, sky, this.#falling)
+    this.air = air
     const { atmosphere, clouds: node, shafts, exposure, flare } = air
-    this.#cascades = air.cascades
     this.#targets = { shafts, node, sky: this.#glows, luna: this.#moon, flare, exposure }
     this.#cascadeTurns = new CascadeTurns(air.cascades)
     this.#daySky = air.daySky
@@ -157,9 +157,7 @@ export class Valley {
     atmosphere.add(this.#style)
     scene.add(this.#land, this.#village.object)
 
-    this.#node = node
-    this.#shafts = shafts
-    if (state.flashes) this.#storm = valleyFlashes(scene, node)
+    if (state.flashes) this.storm = valleyFlashes(scene, node)
     this.exposure = exposure
     // Coarse: the lake mirrors the picture itself where it can.
     const overlay = cloudEnvironment(node, { size: 128 })
@@ -174,7 +172,7 @@ export class Valley {
     this.#setDay(state.hour)
     this.#dispose.push(
       () => this.pipeline.dispose(),
-      () => this.#storm?.dispose(),
+      () => this.storm?.dispose(),
       ...[this.#finish, exposure, overlay, this.#falling, this.#environment, node, shafts].map(
         each => () => each.dispose()
       ),
@@ -226,7 +224,7 @@ export class Valley {
     if (date !== before.date) this.#setDay(this.cycle.hour)
     if (hour !== before.hour) this.cycle.hour = hour
     const fineness = typeof quality === 'string' ? quality : 'low'
-    this.#shafts.quality = SHAFTS[fineness]
+    this.air.shafts.quality = SHAFTS[fineness]
     this.#land.setQuality(fineness)
     this.#land.show(trees, village)
     applyFactors(this.#state, this.#style, this.#targets)
@@ -259,9 +257,9 @@ export class Valley {
   #applyWeather(atOnce = false): void {
     const { turbidity, flashes } = this.#weather.current
     const { clouds, cloudShadows, precipitation, quality } = this.#state
-    this.#node.quality = this.#weather.qualityOf(quality, this.#state.mist)
+    this.air.clouds.quality = this.#weather.qualityOf(quality, this.#state.mist)
     this.#falling.set(this.#falls(), atOnce)
-    this.#storm?.set({ enabled: clouds && flashes > 0, rate: flashes })
+    this.storm?.set({ enabled: clouds && flashes > 0, rate: flashes })
     this.#weather.apply(this.#layers, clouds, this.#state.mist, cloudShadows, precipitation)
     // In steps: the tables are made anew for each.
     const stepped = Math.round(turbidity * 4) / 4
@@ -289,7 +287,7 @@ export class Valley {
     const { sunDirection, luminanceScale } = this.atmosphere
     this.#cascadeTurns.update(this.camera, sunDirection)
     // Cascades have no lights before the first frame.
-    for (const { shadow } of [...this.#cascades.lights, this.#moonlights[0]]) {
+    for (const { shadow } of [...this.air.cascades.lights, this.#moonlights[0]]) {
       if (shadow !== undefined) shadow.intensity = Number(this.#state.shadows)
     }
     const [from, to] = LAMPS
@@ -305,6 +303,7 @@ export class Valley {
     setLit(this.#daySky, elevation > TWILIGHT)
     setLit(this.#nightSky, isNight)
     setLit(this.#sun, elevation > SUNLIGHT)
+    if (this.storm !== undefined) setLit(this.storm.light, this.storm.light.intensity > 0)
     this.#skyMap.update(this.#renderer, this.camera, luminanceScale)
     this.#village.light(share, luminanceScale)
     this.#mirror.scaleTo(luminanceScale)
@@ -319,14 +318,14 @@ export class Valley {
   /** Time of the water's waves and the clouds' drift [s]. */
   set time(seconds: number) {
     this.#water.setTime(seconds)
-    this.#node.time = seconds
+    this.air.clouds.time = seconds
     this.#falling.time = seconds
   }
 
   /** Makes all that the first frame needs. */
   async bake(renderer: WebGPURenderer): Promise<void> {
     this.#mirror.prepare(renderer)
-    await this.#node.bake(renderer)
+    await this.air.clouds.bake(renderer)
   }
 
   dispose(): void {

@@ -63,6 +63,8 @@ export class FragmentPass {
   constructor(name: string, output: Vec4 | Outputs) {
     this.material = Object.assign(new NodeMaterial(), {
       name,
+      // Nothing is blended; but three's ambient occlusion is that of opaque materials, whatever they draw.
+      transparent: true,
       blending: NoBlending,
       depthTest: false,
       depthWrite: false,

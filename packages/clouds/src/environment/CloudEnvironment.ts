@@ -149,6 +149,8 @@ export class CloudEnvironment implements SkyOverlay {
   #state(): CloudState {
     const { field, light, shadows } = this.clouds
     const { moonDirection, illuminance, moonIrradiance } = field.night
+    // At dusk the sun outshines the moon, however fast that moves.
+    const moonlight = shadows.nodes.isMoonlit.value * moonIrradiance.value.y
     return {
       inputs: [
         light.texture.version,
@@ -158,7 +160,7 @@ export class CloudEnvironment implements SkyOverlay {
         ...[...field.layers].map(({ parameters }) => parameters)
       ],
       rotations: field.rotations.map(rotation => rotation.clone()),
-      moonlight: moonDirection.value.clone().multiplyScalar(moonIrradiance.value.y)
+      moonlight: moonDirection.value.clone().multiplyScalar(moonlight)
     }
   }
 

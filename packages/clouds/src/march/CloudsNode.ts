@@ -3,7 +3,7 @@ import type { Atmosphere, ScreenShadows, ShadowedShafts } from '@welkin/atmosphe
 import { checkBoolean, checkNonNegative, checkOptions, fail, setOptions } from '@welkin/geo'
 import type { Camera, PerspectiveCamera } from 'three'
 import { Fn, uniform, uv, vec4 } from 'three/tsl'
-import type { Node, NodeFrame, Renderer } from 'three/webgpu'
+import type { Node, NodeBuilder, NodeFrame, Renderer } from 'three/webgpu'
 import { checkDepth, checkPrecipitation } from '../check'
 import { CloudField, type CloudFieldOptions } from '../density/CloudField'
 import type { CloudWorldMap } from '../density/CloudWorldMap'
@@ -313,10 +313,12 @@ export class CloudsNode extends AtmosphereNode {
     return 8 * super.customCacheKey() + this.screens.size
   }
 
-  override setup(): Node {
+  override setup(builder: NodeBuilder): Node {
     return Fn(() => {
       const clouds = this.passes.accumulated.light.sample(uv()).level(0).toConst()
-      const color = vec4(whereSeen(this.colorNode, clouds.a.greaterThan(0)) as Vec4).toConst()
+      const color = vec4(
+        whereSeen(this.colorNode, clouds.a.greaterThan(0), builder) as Vec4
+      ).toConst()
       const light = clouds.rgb.mul(this.#exposure)
       const result = color.rgb.mul(clouds.a).add(light).toVar()
       for (const screen of this.screens) result.assign(screen.dim(result, clouds.a))
