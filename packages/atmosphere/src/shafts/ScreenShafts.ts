@@ -43,8 +43,9 @@ const CLEAR = 0.99
 interface Seen extends SeenAir {
   /** Octaves by which its depth may be off. */
   readonly tolerance: Float | null
-  /** Foreground: log₂ of its distance [m], and the part of the light that passes it. */
-  readonly front?: { octaves: Float; passes: Float }
+  /** log₂ of the distance of a foreground [m], and the part of the light that passes it. */
+  readonly octaves?: Float
+  readonly passes?: Float
 }
 
 /** End of a view ray. */
@@ -190,22 +191,20 @@ export class ScreenShafts implements ScreenShadows {
     const isSeen = passes.lessThan(CLEAR).toConst()
     const octaves = float(FAR_OCTAVES).toVar()
     const rarity = whole.add(this.#isForward.mul(UNSEEN_RARITY)).toVar()
+    const look = (): void => {
+      octaves.assign(foreground.octavesAt(at, around !== undefined))
+      const nearness = octaves.negate().exp2().max(end.nearness)
+      rarity.assign(grid.rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
+    }
     If(isSeen, () => {
-      const look = (): void => {
-        octaves.assign(foreground.octavesAt(at, around !== undefined))
-        const nearness = octaves.negate().exp2().max(end.nearness)
-        rarity.assign(grid.rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
-      }
-      if (around === undefined) look()
-      else {
-        // A pixel in the midst of clouds need not be looked at.
-        If(hasForeground(around, rarity, passes), () => {
-          rarity.assign(rarityAt(around.mean.w))
-        }).Else(look)
-      }
+      if (around === undefined) return look()
+      // A pixel in the midst of clouds need not be looked at.
+      If(hasForeground(around, rarity, passes), () => {
+        rarity.assign(rarityAt(around.mean.w))
+      }).Else(look)
     })
     const tolerance = isSeen.select(foreground.tolerance, 0).toConst() as Float
-    return { rarity, least, tolerance, front: { octaves, passes } }
+    return { rarity, least, tolerance, octaves, passes }
   }
 
   /** 1/τ² up to the end of a ray. Ground of the planet before which nothing is drawn is told from the sky beside it. */
@@ -221,16 +220,16 @@ export class ScreenShafts implements ScreenShadows {
     const end = this.#endIn(renderer, at)
     const ray = this.#rayTo(end)
     const { distance } = ray
-    const { front, rarity, least } = this.#seenAt(at, end)
+    const { octaves, passes, rarity, least } = this.#seenAt(at, end)
     const { isOrthographicCamera } = this.#shafts.camera as OrthographicCamera
     const start = isOrthographicCamera
       ? view.toMapped(vec3(this.#rays.position(renderer, at, float(0.5)).xy, 0))
       : undefined
     let seen: ShaftRay = { ...ray, start }
-    if (front !== undefined) {
-      const nearest = front.octaves.exp2().min(distance).toConst() as Float
-      const behind = front.passes.mul(this.#isForward.oneMinus()).toConst() as Float
-      const before = front.passes.oneMinus().add(behind).toConst() as Float
+    if (octaves && passes) {
+      const nearest = octaves.exp2().min(distance).toConst() as Float
+      const behind = passes.mul(this.#isForward.oneMinus()).toConst() as Float
+      const before = passes.oneMinus().add(behind).toConst() as Float
       seen = {
         ...seen,
         distance: behind.greaterThan(MIN_TRANSMITTANCE).select(distance, nearest).toConst(),
