@@ -19,7 +19,6 @@ import {
   rarityAt,
   THIN_HEIGHT,
   type LostLight,
-  type Mean,
   type SeenAir
 } from './LostLightGrid'
 import type { ShaftRay } from './tsl/shadowsAlong'
@@ -156,9 +155,9 @@ export class ScreenShafts implements ScreenShadows {
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
     const at = this.#place
-    const around = this.grid.meanAt(at)
-    const seen = this.#seenAt(at, end, around, transmittance)
-    const lost = this.grid.read(around, seen, seen.tolerance, this.#lightOn(this.#rayTo(end)))
+    const mean = this.grid.meanAt(at)
+    const seen = this.#seenAt(at, end, mean, transmittance)
+    const lost = this.grid.read(at, mean, seen, seen.tolerance, this.#lightOn(this.#rayTo(end)))
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -181,8 +180,8 @@ export class ScreenShafts implements ScreenShadows {
     return left
   }
 
-  /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. With the mean `around` it, roughly. */
-  #seenAt(at: Vec2, end: RayEnd, around?: Mean, transmittance?: Float): Seen {
+  /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. With the `mean` around it, roughly. */
+  #seenAt(at: Vec2, end: RayEnd, mean?: Vec4, transmittance?: Float): Seen {
     const { foreground, grid } = this
     const least = grid.leastRarity(end.cosView)
     const whole = this.#rarityOf(end, least)
@@ -192,15 +191,15 @@ export class ScreenShafts implements ScreenShadows {
     const octaves = float(FAR_OCTAVES).toVar()
     const rarity = whole.add(this.#isForward.mul(UNSEEN_RARITY)).toVar()
     const look = (): void => {
-      octaves.assign(foreground.octavesAt(at, around !== undefined))
+      octaves.assign(foreground.octavesAt(at, mean !== undefined))
       const nearness = octaves.negate().exp2().max(end.nearness)
       rarity.assign(grid.rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
     }
     If(isSeen, () => {
-      if (around === undefined) return look()
+      if (mean === undefined) return look()
       // A pixel in the midst of clouds need not be looked at.
-      If(hasForeground(around, rarity, passes), () => {
-        rarity.assign(rarityAt(around.mean.w))
+      If(hasForeground(mean, rarity, passes), () => {
+        rarity.assign(rarityAt(mean.w))
       }).Else(look)
     })
     const tolerance = isSeen.select(foreground.tolerance, 0).toConst() as Float
@@ -275,24 +274,23 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Light of the air on a ray without shadows up to a distance, or its end, as the grid keeps it. */
   #lightOn(ray: ShaftRay): (distance: Float) => Vec3 {
-    return distance => this.#litAir({ ...ray, distance: ray.distance.min(distance).toConst() })
-  }
-
-  #litAir(ray: ShaftRay): Vec3 {
-    const { cosView, cosViewLight, distance } = ray
-    const { air, volume, viewpoint } = this.#shafts.view
-    const limits = rayLimits(viewpoint, cosView)
-    const at = [cosView, cosViewLight, limits, distance] as const
-    const { radiance, depth } = sampleVolume(air.uniforms, volume, viewpoint, ...at)
-    const light = radiance.toVar()
-    If(this.#hasMedia.greaterThan(0), () => {
-      const media = this.#shafts.shadowedAir.mediaOn({ view: this.#shafts.view, ...ray })
-      for (const { transmittance, ahead, singleScattered } of media) {
-        const left = ahead ? mix(transmittance, 1, ahead(depth)) : transmittance
-        light.assign(light.mul(left).add(singleScattered ?? 0))
-      }
-    })
-    return this.#color(light)
+    const { view, shadowedAir } = this.#shafts
+    const { air, volume, viewpoint } = view
+    const { cosView, cosViewLight } = ray
+    return to => {
+      const distance = ray.distance.min(to).toConst()
+      const at = [cosView, cosViewLight, rayLimits(viewpoint, cosView), distance] as const
+      const { radiance, depth } = sampleVolume(air.uniforms, volume, viewpoint, ...at)
+      const light = radiance.toVar()
+      If(this.#hasMedia.greaterThan(0), () => {
+        const media = shadowedAir.mediaOn({ ...ray, view, distance })
+        for (const { transmittance, ahead, singleScattered } of media) {
+          const left = ahead ? mix(transmittance, 1, ahead(depth)) : transmittance
+          light.assign(light.mul(left).add(singleScattered ?? 0))
+        }
+      })
+      return this.#color(light)
+    }
   }
 
   /** Takes them out of the shafts of their camera, until they are drawn again. */
