@@ -1,5 +1,5 @@
 import type { RenderTarget } from 'three'
-import { Fn, If, float, log2, luminance, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, If, float, log2, luminance, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
@@ -14,6 +14,7 @@ import {
   type Vec4
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
+import { depthOf, rarityAt, shownOf } from './tsl/rarity'
 import { FAR } from './tsl/without'
 
 /** Octaves of depth by which pixels may differ and still share light. Smaller: the march's pixels show on slopes (*Towers in haze*). */
@@ -42,9 +43,6 @@ const DISTINCT = 0.25
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
 
-/** Square of the light of clear air over what a foreground leaves of it, at least, to be told from none. Less: thin clouds have the light of the air behind them. */
-const LEAST_HIDDEN = 1.6
-
 /** Greatest number that the targets keep: half floats hold a little more. */
 const MAX_KEPT = 6e4
 
@@ -61,9 +59,6 @@ const LEAST_THINNING = 1e-9
 /** Height over which the thinning of the air is found [m]. */
 export const THIN_HEIGHT = 1000
 
-/** Least 1/τ² of what is seen through a foreground [–]. */
-const LEAST_RARITY = 1e-6
-
 /** Greatest light that is mixed [octaves]. */
 const MAX_MIXED = Math.log2(MAX_KEPT) - 4
 
@@ -75,26 +70,6 @@ const PALE = 0.2
 
 /** Summand of places in the grid: rounding must not put whole ones into the cell before, and none is in the middle between pixels, where marks of two alone would count [pixels]. Less: lines a pixel wide where the spacing is even. */
 const ASIDE = 0.02
-
-/** Part of the light of clear air without end that comes from an optical path τ: much as 1 − exp(−τ) is τ/√(1 + τ²), by 1/τ². */
-const shownOf = (rarity: Float): Float => rarity.add(1).inverseSqrt().toConst()
-
-/** 1/τ² by log₂ τ, and the other way round. */
-export const rarityAt = (depth: Float): Float => depth.mul(-2).exp2().toConst()
-const depthOf = (rarity: Float): Float => log2(rarity).mul(-0.5).toConst()
-
-/**
- * True if pixels around have a foreground before clear air that accounts for a pixel's own: as much light is seen as passes it
- * from behind, or more, and less than without it.
- *
- * @param behind - 1/τ² up to what is behind the foreground.
- */
-export function hasForeground(mean: Vec4, behind: Float, transmittance: Float): Bool {
-  // Reciprocal squares of what is shown. Those that are marked show all.
-  const [around, clear] = [rarityAt(mean.w), behind].map(rarity => rarity.add(1).toConst())
-  const isNearer = around.greaterThan(clear.mul(LEAST_HIDDEN))
-  return isNearer.and(around.mul(transmittance).mul(transmittance).lessThan(clear)) as Bool
-}
 
 /** Light of which parts are taken, by colours. */
 const partedLight = (light: Vec3): Vec3 =>
@@ -281,17 +256,6 @@ export class LostLightGrid {
   #distanceAt(depth: Float, least: Float): Float {
     const rarity = rarityAt(depth)
     return rarity.sub(least).max(rarity.mul(LEAST_LEFT)).inverseSqrt().mul(this.#freePath)
-  }
-
-  /**
-   * 1/τ² of a foreground, through which a part passes of what is behind: each has its part of the light that is seen.
-   *
-   * @param front - 1/τ² up to the foreground.
-   * @param behind - That up to what is behind it; the greatest where that is not seen.
-   */
-  rarityThrough(front: Float, behind: Float, transmittance: Float): Float {
-    const shown = mix(shownOf(front), shownOf(behind), transmittance).toConst()
-    return shown.mul(shown).reciprocal().sub(1).max(LEAST_RARITY)
   }
 
   /** Place among the texels of a place in the picture. */

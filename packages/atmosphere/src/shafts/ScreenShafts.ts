@@ -13,14 +13,8 @@ import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
-import {
-  LostLightGrid,
-  hasForeground,
-  rarityAt,
-  THIN_HEIGHT,
-  type LostLight,
-  type SeenAir
-} from './LostLightGrid'
+import { LostLightGrid, THIN_HEIGHT, type LostLight, type SeenAir } from './LostLightGrid'
+import { hasForeground, rarityAt, rarityThrough } from './tsl/rarity'
 import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf } from './tsl/without'
 import { DepthRays } from '../view/DepthRays'
@@ -193,7 +187,7 @@ export class ScreenShafts implements ScreenShadows {
     const look = (): void => {
       octaves.assign(foreground.octavesAt(at, mean !== undefined))
       const nearness = octaves.negate().exp2().max(end.nearness)
-      rarity.assign(grid.rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
+      rarity.assign(rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
     }
     If(isSeen, () => {
       if (mean === undefined) return look()
