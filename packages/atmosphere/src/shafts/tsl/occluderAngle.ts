@@ -72,7 +72,7 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: De
   const place = at.mul(size).sub(0.5).toConst()
   const first = place.floor().toConst()
   const part = place.sub(first).toConst()
-  const four = gatherRed(depth, first.add(1).div(size) as Vec2)
+  const four = gatherRed(depth, first.add(1).div(size))
   const among = (weight: Vec2): Float => mixed(four, weight)
   const { x, y, z, w } = four
   const farther = isReversed ? 'min' : 'max'

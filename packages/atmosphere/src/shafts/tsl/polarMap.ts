@@ -1,6 +1,6 @@
 import { atan, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import { gatherRed, mixed, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
+import { gatherRed, mixed, type Float, type Vec2, type Vec3 } from '../../tsl-types'
 
 /** Columns and rows by which {@link softDark} reads beside a place, about as far: with one alone, shadows of hills on clouds far away have edges in steps (*Fog from above*). */
 const BESIDE = [
@@ -60,8 +60,8 @@ export function polarRay(
   const turns = atan(y, x).mul(1 / (2 * Math.PI))
   return {
     sinViewLight,
-    cotangent: cosViewLight.div(sinViewLight).max(LEAST_SEEN).toConst() as Float,
-    row: turns.add(1).mul(size.y).sub(0.5).toConst() as Float
+    cotangent: cosViewLight.div(sinViewLight).max(LEAST_SEEN).toConst(),
+    row: turns.add(1).mul(size.y).sub(0.5).toConst()
   }
 }
 
@@ -113,7 +113,7 @@ function darkAt(map: TextureNode, frame: PolarFrame, { cotangent }: PolarRay, at
   // Not a step: loops about it have a variable of that name.
   const nearer = gatherRed(map, first.add(1).mul(frame.texelSize)).sub(cotangent)
   const four = nearer.sign().max(0).toConst()
-  return mixed(four as Vec4, place.sub(first).toConst())
+  return mixed(four, place.sub(first).toConst())
 }
 
 /** As {@link darkPart}, of rays of light about, too: edges of shadows are soft. */

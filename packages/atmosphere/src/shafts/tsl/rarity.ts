@@ -24,7 +24,7 @@ export function hasForeground(mean: Vec4, behind: Float, transmittance: Float): 
   // Reciprocal squares of what is shown. Those that are marked show all.
   const [around, clear] = [rarityAt(mean.w), behind].map(rarity => rarity.add(1).toConst())
   const isNearer = around.greaterThan(clear.mul(LEAST_HIDDEN))
-  return isNearer.and(around.mul(transmittance).mul(transmittance).lessThan(clear)) as Bool
+  return isNearer.and(around.mul(transmittance).mul(transmittance).lessThan(clear))
 }
 
 /**
