@@ -28,11 +28,11 @@ const LEAST_LOST = 5e-4
 
 /** Octaves beyond all depths: those of means where next to nothing is lost, where light is steep, and of pixels whose grounds are at different depths. */
 const LIT_DEPTH = 40
-const STEEP_DEPTH = 1024
+const STEEP_DEPTH = 128
 const APART_DEPTH = 6e4
 
-/** Octaves that none is beyond but means marked as apart. */
-const STEEP_LIMIT = 1100
+/** Octaves that none is beyond but means marked as apart. Greater: lines a pixel wide beside them, where they have little weight (*Sun behind cumulus*). */
+const STEEP_LIMIT = 160
 
 /** Octaves of the light of clear air by which pixels differ that weigh half as much as those that have the same. Greater: halos at silhouettes. */
 const SIMILAR = 0.02
