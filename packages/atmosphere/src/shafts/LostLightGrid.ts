@@ -1,5 +1,5 @@
 import type { RenderTarget } from 'three'
-import { Fn, If, float, log2, luminance, mix, step, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, If, float, log2, luminance, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
@@ -14,6 +14,7 @@ import {
   type Vec4
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
+import { depthOf, rarityAt, shownOf } from './tsl/rarity'
 import { FAR } from './tsl/without'
 
 /** Octaves of depth by which pixels may differ and still share light. Smaller: the march's pixels show on slopes (*Towers in haze*). */
@@ -27,11 +28,11 @@ const LEAST_LOST = 5e-4
 
 /** Octaves beyond all depths: those of means where next to nothing is lost, where light is steep, and of pixels whose grounds are at different depths. */
 const LIT_DEPTH = 40
-const STEEP_DEPTH = 1024
+const STEEP_DEPTH = 128
 const APART_DEPTH = 6e4
 
-/** Octaves that none is beyond but means marked as apart. */
-const STEEP_LIMIT = 1100
+/** Octaves that none is beyond but means marked as apart. Greater: lines a pixel wide beside them, where they have little weight (*Sun behind cumulus*). */
+const STEEP_LIMIT = 160
 
 /** Octaves of the light of clear air by which pixels differ that weigh half as much as those that have the same. Greater: halos at silhouettes. */
 const SIMILAR = 0.02
@@ -41,9 +42,6 @@ const DISTINCT = 0.25
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
-
-/** Square of the light of clear air over what a foreground leaves of it, at least, to be told from none. Less: thin clouds have the light of the air behind them. */
-const LEAST_HIDDEN = 1.6
 
 /** Greatest number that the targets keep: half floats hold a little more. */
 const MAX_KEPT = 6e4
@@ -61,59 +59,26 @@ const LEAST_THINNING = 1e-9
 /** Height over which the thinning of the air is found [m]. */
 export const THIN_HEIGHT = 1000
 
-/** Least 1/τ² of what is seen through a foreground [–]. */
-const LEAST_RARITY = 1e-6
-
 /** Greatest light that is mixed [octaves]. */
 const MAX_MIXED = Math.log2(MAX_KEPT) - 4
 
 /** Least light that other light is compared with [1/sr]. */
 const MIN_LIGHT = 1e-12
 
-/** Part of the luminance below which a colour is not compared by itself: corona and dusk have colours near and below nought. */
+/** Part of the luminance that a colour counts for at least: corona and dusk have colours near and below nought. */
 const PALE = 0.2
 
 /** Summand of places in the grid: rounding must not put whole ones into the cell before, and none is in the middle between pixels, where marks of two alone would count [pixels]. Less: lines a pixel wide where the spacing is even. */
 const ASIDE = 0.02
 
-/** Part of the light of clear air without end that comes from an optical path τ: much as 1 − exp(−τ) is τ/√(1 + τ²), by 1/τ². */
-const shownOf = (rarity: Float): Float => rarity.add(1).inverseSqrt().toConst()
-
-/** 1/τ² by log₂ τ, and the other way round. */
-export const rarityAt = (depth: Float): Float => depth.mul(-2).exp2().toConst()
-const depthOf = (rarity: Float): Float => log2(rarity).mul(-0.5).toConst()
-
-/**
- * True if pixels around have a foreground before clear air that accounts for a pixel's own: as much light is seen as passes it
- * from behind, or more, and less than without it.
- *
- * @param behind - 1/τ² up to what is behind the foreground.
- */
-export function hasForeground({ mean }: Mean, behind: Float, transmittance: Float): Bool {
-  // Reciprocal squares of what is shown. Those that are marked show all.
-  const [around, clear] = [rarityAt(mean.w), behind].map(rarity => rarity.add(1).toConst())
-  const isNearer = around.greaterThan(clear.mul(LEAST_HIDDEN))
-  return isNearer.and(around.mul(transmittance).mul(transmittance).lessThan(clear)) as Bool
-}
-
-/** Parts of the light that are lost, by colours. */
-function partsOf(lost: Vec3, lit: Vec3): Vec3 {
-  const all = luminance(lit).max(MIN_LIGHT).toConst()
-  const isBright = vec3(step(all.mul(PALE), lit)).toConst()
-  const [taken, whole] = [mix(vec3(luminance(lost)), lost, isBright), mix(vec3(all), lit, isBright)]
-  return taken.div(whole).clamp(-MAX_KEPT, 1)
-}
+/** Light of which parts are taken, by colours. */
+const partedLight = (light: Vec3): Vec3 =>
+  light.max(luminance(light).max(MIN_LIGHT).mul(PALE)).toConst()
 
 /** First or last in each direction, of four by their number. */
 function cornerOf(index: Int): Vec2 {
   const row = float(index).div(2).floor().toConst()
   return vec2(float(index).sub(row.mul(2)), row)
-}
-
-/** Mean of pixels of the grid: light that is lost, and depth; and its place among the texels. */
-export interface Mean {
-  readonly mean: Vec4
-  readonly place: Vec2
 }
 
 /** Air of a ray, as far as a picture shows it. */
@@ -228,7 +193,7 @@ export class LostLightGrid {
         const light = log2(all.mul(LIGHT_SCALE).div(shownOf(whole)))
         const seen = lit(this.#distanceAt(depth, least))
         lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), depth))
-        partsOut.assign(vec4(partsOf(lost, seen), light))
+        partsOut.assign(vec4(lost.div(partedLight(seen)).clamp(-MAX_KEPT, 1), light))
       })
       this.#passes = [marched, Fn(() => this.#arrange())()].map(
         output => new FragmentPass('Welkin.LightShafts', output)
@@ -293,33 +258,28 @@ export class LostLightGrid {
     return rarity.sub(least).max(rarity.mul(LEAST_LEFT)).inverseSqrt().mul(this.#freePath)
   }
 
-  /**
-   * 1/τ² of a foreground, through which a part passes of what is behind: each has its part of the light that is seen.
-   *
-   * @param front - 1/τ² up to the foreground.
-   * @param behind - That up to what is behind it; the greatest where that is not seen.
-   */
-  rarityThrough(front: Float, behind: Float, transmittance: Float): Float {
-    const shown = mix(shownOf(front), shownOf(behind), transmittance).toConst()
-    return shown.mul(shown).reciprocal().sub(1).max(LEAST_RARITY)
+  /** Place among the texels of a place in the picture. */
+  #placeOf(at: Vec2): Vec2 {
+    return at.mul(this.#scale).add(this.#offset).toConst()
   }
 
-  /** Mean of the grid's pixels around a place in the picture, to be read once for it. */
-  meanAt(at: Vec2): Mean {
-    const place = at.mul(this.#scale).add(this.#offset).toConst() as Vec2
-    return { place, mean: sampleLevel0(this.#texels, place).toConst() }
+  /** Mean of the grid's pixels around a place in the picture, to be read once for it: light that is lost, and depth. */
+  meanAt(at: Vec2): Vec4 {
+    return sampleLevel0(this.#texels, this.#placeOf(at)).toConst()
   }
 
   /**
    * Light that a pixel loses, as {@link LostLight} has it.
    *
-   * @param around - Mean around it.
+   * @param at - Its place in the picture.
+   * @param mean - Mean around it.
    * @param seen - Its air.
    * @param tolerance - Octaves by which its depth may be off: it is as near to those around as that allows. Null is none.
    * @param lit - Light of its air up to a distance [m]. Called in a branch.
    */
   read(
-    { place: middle, mean }: Mean,
+    at: Vec2,
+    mean: Vec4,
     { rarity, least }: SeenAir,
     tolerance: Float | null,
     lit: (distance: Float) => Vec3
@@ -332,10 +292,10 @@ export class LostLightGrid {
     const slope = known.mul(known).oneMinus().mul(Math.LN2)
     const part = tolerance ? known.mul(slope.mul(moved(mean.w)).add(1)) : known
     const lost = mean.rgb.mul(part.div(LIGHT_SCALE)).toVar() as Vec3
-    const isLit = mean.w.sub(LIT_DEPTH).abs().lessThan(NEAR_MEAN)
-    If(own.sub(mean.w).abs().greaterThan(NEAR_MEAN).and(isLit.not()), () => {
+    const isOff = (depth: Float | number): Bool => mean.w.sub(depth).abs().greaterThan(NEAR_MEAN)
+    If(isOff(own).and(isOff(LIT_DEPTH)), () => {
       const size = this.#gridSize
-      const place = middle.div(this.#texelSize).sub(1).toConst() as Vec2
+      const place = this.#placeOf(at).div(this.#texelSize).sub(1).toConst() as Vec2
       const isSteep = mean.w.lessThan(STEEP_LIMIT)
       const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
       // Steps of a depth show where the nearest to it counts for more than others.
@@ -363,7 +323,7 @@ export class LostLightGrid {
         .toConst()
       const most = farther.lessThan(SAME_DEPTH).select(sums.w.add(farther.max(0)), LIT_DEPTH)
       const depth = own.add(moved(sums.w)).min(most).toConst() as Float
-      lost.assign(lit(this.#distanceAt(depth, least)).mul(sums.rgb))
+      lost.assign(partedLight(lit(this.#distanceAt(depth, least))).mul(sums.rgb))
     })
     return lost
   }

@@ -9,7 +9,6 @@ import { screenRay } from '../view/tsl/screenRay'
 import type { CameraShafts } from './CameraShafts'
 import { ScreenShafts } from './ScreenShafts'
 import { staggered } from './tsl/lostLight'
-import { softDark } from './tsl/polarMap'
 import { shadowAt } from './tsl/shadowsAlong'
 
 /** Samples of the shadow between two points of a mesh's ray. Fewer: grain at the edges of shadows, by orthographic cameras. */
@@ -103,7 +102,7 @@ export class MeshShafts extends ScreenShafts implements MeshShadows {
           direction: offset.div(distance).toConst() as Vec3,
           jitter
         }
-        const { dark, missing } = shadowAt(view, shadowedAir, ray, distance, softDark)
+        const { dark, missing } = shadowAt(view, shadowedAir, ray, distance)
         direct.subAssign(dark.mul(share))
         if (missing !== null) diffuse.subAssign(missing.mul(share))
       })

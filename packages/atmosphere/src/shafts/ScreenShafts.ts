@@ -13,15 +13,8 @@ import { isShadowed } from './tsl/lostInMedia'
 import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
-import {
-  LostLightGrid,
-  hasForeground,
-  rarityAt,
-  THIN_HEIGHT,
-  type LostLight,
-  type Mean,
-  type SeenAir
-} from './LostLightGrid'
+import { LostLightGrid, THIN_HEIGHT, type LostLight, type SeenAir } from './LostLightGrid'
+import { hasForeground, rarityAt, rarityThrough } from './tsl/rarity'
 import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf } from './tsl/without'
 import { DepthRays } from '../view/DepthRays'
@@ -43,8 +36,9 @@ const CLEAR = 0.99
 interface Seen extends SeenAir {
   /** Octaves by which its depth may be off. */
   readonly tolerance: Float | null
-  /** Foreground: log₂ of its distance [m], and the part of the light that passes it. */
-  readonly front?: { octaves: Float; passes: Float }
+  /** log₂ of the distance of a foreground [m], and the part of the light that passes it. */
+  readonly octaves?: Float
+  readonly passes?: Float
 }
 
 /** End of a view ray. */
@@ -155,9 +149,9 @@ export class ScreenShafts implements ScreenShadows {
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
     const at = this.#place
-    const around = this.grid.meanAt(at)
-    const seen = this.#seenAt(at, end, around, transmittance)
-    const lost = this.grid.read(around, seen, seen.tolerance, this.#lightOn(this.#rayTo(end)))
+    const mean = this.grid.meanAt(at)
+    const seen = this.#seenAt(at, end, mean, transmittance)
+    const lost = this.grid.read(at, mean, seen, seen.tolerance, this.#lightOn(this.#rayTo(end)))
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -180,8 +174,8 @@ export class ScreenShafts implements ScreenShadows {
     return left
   }
 
-  /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. With the mean `around` it, roughly. */
-  #seenAt(at: Vec2, end: RayEnd, around?: Mean, transmittance?: Float): Seen {
+  /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. With the `mean` around it, roughly. */
+  #seenAt(at: Vec2, end: RayEnd, mean?: Vec4, transmittance?: Float): Seen {
     const { foreground, grid } = this
     const least = grid.leastRarity(end.cosView)
     const whole = this.#rarityOf(end, least)
@@ -190,22 +184,20 @@ export class ScreenShafts implements ScreenShadows {
     const isSeen = passes.lessThan(CLEAR).toConst()
     const octaves = float(FAR_OCTAVES).toVar()
     const rarity = whole.add(this.#isForward.mul(UNSEEN_RARITY)).toVar()
+    const look = (): void => {
+      octaves.assign(foreground.octavesAt(at, mean !== undefined))
+      const nearness = octaves.negate().exp2().max(end.nearness)
+      rarity.assign(rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
+    }
     If(isSeen, () => {
-      const look = (): void => {
-        octaves.assign(foreground.octavesAt(at, around !== undefined))
-        const nearness = octaves.negate().exp2().max(end.nearness)
-        rarity.assign(grid.rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
-      }
-      if (around === undefined) look()
-      else {
-        // A pixel in the midst of clouds need not be looked at.
-        If(hasForeground(around, rarity, passes), () => {
-          rarity.assign(rarityAt(around.mean.w))
-        }).Else(look)
-      }
+      if (mean === undefined) return look()
+      // A pixel in the midst of clouds need not be looked at.
+      If(hasForeground(mean, rarity, passes), () => {
+        rarity.assign(rarityAt(mean.w))
+      }).Else(look)
     })
     const tolerance = isSeen.select(foreground.tolerance, 0).toConst() as Float
-    return { rarity, least, tolerance, front: { octaves, passes } }
+    return { rarity, least, tolerance, octaves, passes }
   }
 
   /** 1/τ² up to the end of a ray. Ground of the planet before which nothing is drawn is told from the sky beside it. */
@@ -221,16 +213,16 @@ export class ScreenShafts implements ScreenShadows {
     const end = this.#endIn(renderer, at)
     const ray = this.#rayTo(end)
     const { distance } = ray
-    const { front, rarity, least } = this.#seenAt(at, end)
+    const { octaves, passes, rarity, least } = this.#seenAt(at, end)
     const { isOrthographicCamera } = this.#shafts.camera as OrthographicCamera
     const start = isOrthographicCamera
       ? view.toMapped(vec3(this.#rays.position(renderer, at, float(0.5)).xy, 0))
       : undefined
     let seen: ShaftRay = { ...ray, start }
-    if (front !== undefined) {
-      const nearest = front.octaves.exp2().min(distance).toConst() as Float
-      const behind = front.passes.mul(this.#isForward.oneMinus()).toConst() as Float
-      const before = front.passes.oneMinus().add(behind).toConst() as Float
+    if (octaves && passes) {
+      const nearest = octaves.exp2().min(distance).toConst() as Float
+      const behind = passes.mul(this.#isForward.oneMinus()).toConst() as Float
+      const before = passes.oneMinus().add(behind).toConst() as Float
       seen = {
         ...seen,
         distance: behind.greaterThan(MIN_TRANSMITTANCE).select(distance, nearest).toConst(),
@@ -276,24 +268,23 @@ export class ScreenShafts implements ScreenShadows {
 
   /** Light of the air on a ray without shadows up to a distance, or its end, as the grid keeps it. */
   #lightOn(ray: ShaftRay): (distance: Float) => Vec3 {
-    return distance => this.#litAir({ ...ray, distance: ray.distance.min(distance).toConst() })
-  }
-
-  #litAir(ray: ShaftRay): Vec3 {
-    const { cosView, cosViewLight, distance } = ray
-    const { air, volume, viewpoint } = this.#shafts.view
-    const limits = rayLimits(viewpoint, cosView)
-    const at = [cosView, cosViewLight, limits, distance] as const
-    const { radiance, depth } = sampleVolume(air.uniforms, volume, viewpoint, ...at)
-    const light = radiance.toVar()
-    If(this.#hasMedia.greaterThan(0), () => {
-      const media = this.#shafts.shadowedAir.mediaOn({ view: this.#shafts.view, ...ray })
-      for (const { transmittance, ahead, singleScattered } of media) {
-        const left = ahead ? mix(transmittance, 1, ahead(depth)) : transmittance
-        light.assign(light.mul(left).add(singleScattered ?? 0))
-      }
-    })
-    return this.#color(light)
+    const { view, shadowedAir } = this.#shafts
+    const { air, volume, viewpoint } = view
+    const { cosView, cosViewLight } = ray
+    return to => {
+      const distance = ray.distance.min(to).toConst()
+      const at = [cosView, cosViewLight, rayLimits(viewpoint, cosView), distance] as const
+      const { radiance, depth } = sampleVolume(air.uniforms, volume, viewpoint, ...at)
+      const light = radiance.toVar()
+      If(this.#hasMedia.greaterThan(0), () => {
+        const media = shadowedAir.mediaOn({ ...ray, view, distance })
+        for (const { transmittance, ahead, singleScattered } of media) {
+          const left = ahead ? mix(transmittance, 1, ahead(depth)) : transmittance
+          light.assign(light.mul(left).add(singleScattered ?? 0))
+        }
+      })
+      return this.#color(light)
+    }
   }
 
   /** Takes them out of the shafts of their camera, until they are drawn again. */

@@ -48,7 +48,7 @@ export interface ShadowedMedium {
   /** Part of the light from farther away that passes the medium, in [0, 1]. */
   readonly transmittance: Float
   /** Part of the air's light that is in front of it, given the optical depth of the air on the ray; absent for none. */
-  ahead?(depth: Vec4): Vec4
+  readonly ahead?: (depth: Vec4) => Vec4
   /** Light that it adds, scattered once; null where the source does not light it: then it only dims. */
   readonly singleScattered: Vec4 | null
   /** Light that it adds, scattered more often than once. */

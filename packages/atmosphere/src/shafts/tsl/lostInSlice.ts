@@ -97,7 +97,7 @@ export function lostInSlice(
       cosViewLight,
       samples: int(1),
       jitter: float(0.5),
-      missingAt: () => past(missing, from, length as Float)
+      missingAt: () => past(missing, from, length)
     }
     lost.addAssign(lostDiffuse(air, diffuse))
     const before = media.length > 0 ? mediaTo(from) : []

@@ -72,12 +72,11 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: De
   const place = at.mul(size).sub(0.5).toConst()
   const first = place.floor().toConst()
   const part = place.sub(first).toConst()
-  const four = gatherRed(depth, first.add(1).div(size) as Vec2)
+  const four = gatherRed(depth, first.add(1).div(size))
   const among = (weight: Vec2): Float => mixed(four, weight)
-  const farthest = [four.y, four.z, four.w].reduce<Float>(
-    (far, each) => (isReversed ? far.min(each) : far.max(each)),
-    four.x
-  )
+  const { x, y, z, w } = four
+  const farther = isReversed ? 'min' : 'max'
+  const farthest = x[farther](y)[farther](z)[farther](w)
   return isEmpty(farthest, { isReversed, isCompared: false })
     .select(among(step(0.5, part)), among(part))
     .toConst()

@@ -1,17 +1,18 @@
 import { atan, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import { gatherRed, mixed, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
+import { gatherRed, mixed, type Float, type Vec2, type Vec3 } from '../../tsl-types'
 
-/** Columns and rows over which {@link softDark} is spread besides, about as far: without, shadows of hills on clouds far away have edges in steps (*Fog from above*). */
-const ASIDE_COLUMNS = 1
-const ASIDE_ROWS = 5
+/** Columns and rows by which {@link softDark} reads beside a place, about as far: with one alone, shadows of hills on clouds far away have edges in steps (*Fog from above*). */
+const BESIDE = [
+  [-0.6, 1],
+  [-0.2, -3],
+  [0.2, 3],
+  [0.6, -1]
+] as const
 
 /** Greatest cotangent of an angle that the map keeps, and the least of a view ray, which is greater than that of no occluder: half floats hold a little more. */
 export const MOST_COTANGENT = 6e4
 const LEAST_SEEN = -5e4
-
-/** Factor on noise for numbers that are not alike: 4√5. */
-const NOISE_STRIDE = 8.944
 
 /**
  * Polar coordinates about the camera with the source of light as pole: θ from the source, φ around it, ρ the
@@ -59,8 +60,8 @@ export function polarRay(
   const turns = atan(y, x).mul(1 / (2 * Math.PI))
   return {
     sinViewLight,
-    cotangent: cosViewLight.div(sinViewLight).max(LEAST_SEEN).toConst() as Float,
-    row: turns.add(1).mul(size.y).sub(0.5).toConst() as Float
+    cotangent: cosViewLight.div(sinViewLight).max(LEAST_SEEN).toConst(),
+    row: turns.add(1).mul(size.y).sub(0.5).toConst()
   }
 }
 
@@ -99,8 +100,11 @@ export function darkPart(
   ray: PolarRay,
   distance: Float
 ): Float {
-  return darkAt(map, frame, ray, vec2(columnAt(frame, distance.mul(ray.sinViewLight)), ray.row))
+  return darkAt(map, frame, ray, placeOf(frame, ray, distance))
 }
+
+const placeOf = (frame: PolarFrame, { sinViewLight, row }: PolarRay, distance: Float): Vec2 =>
+  vec2(columnAt(frame, distance.mul(sinViewLight)), row).toConst()
 
 /** Dark part of the air between the four rays of light about a place among columns and rows. */
 function darkAt(map: TextureNode, frame: PolarFrame, { cotangent }: PolarRay, at: Vec2): Float {
@@ -109,22 +113,19 @@ function darkAt(map: TextureNode, frame: PolarFrame, { cotangent }: PolarRay, at
   // Not a step: loops about it have a variable of that name.
   const nearer = gatherRed(map, first.add(1).mul(frame.texelSize)).sub(cotangent)
   const four = nearer.sign().max(0).toConst()
-  return mixed(four as Vec4, place.sub(first).toConst())
+  return mixed(four, place.sub(first).toConst())
 }
 
-/**
- * As {@link darkPart}, from rays of light a little beside, by noise: edges become soft.
- *
- * @param noise - In [0, 1).
- */
+/** As {@link darkPart}, of rays of light about, too: edges of shadows are soft. */
 export function softDark(
   map: TextureNode,
   frame: PolarFrame,
   ray: PolarRay,
-  distance: Float,
-  noise: Float
+  distance: Float
 ): Float {
-  const aside = noise.mul(NOISE_STRIDE).fract().sub(0.5).mul(ASIDE_COLUMNS)
-  const column = columnAt(frame, distance.mul(ray.sinViewLight)).add(aside)
-  return darkAt(map, frame, ray, vec2(column, ray.row.add(noise.sub(0.5).mul(ASIDE_ROWS))))
+  const place = placeOf(frame, ray, distance)
+  const parts = BESIDE.map(([column, row]) =>
+    darkAt(map, frame, ray, place.add(vec2(column, row)) as Vec2)
+  )
+  return parts.reduce((sum, part) => sum.add(part)).div(BESIDE.length)
 }

@@ -63,7 +63,7 @@ export function shadowsAlong(
   { direction, seenFrom, receiver }: Pick<ShaftRay, 'direction' | 'seenFrom' | 'receiver'>,
   polar: () => PolarRay,
   jitter: Float,
-  readMap: typeof softDark = darkPart
+  readMap = darkPart
 ): Shadows {
   const placeAt = (distance: Float): AirPoint => {
     const offset = direction.mul(distance).toConst() as Vec3
@@ -80,7 +80,7 @@ export function shadowsAlong(
     darkAt(distance, isMapped) {
       const dark = float(0).toVar() as Float
       const addMap = (): void => {
-        dark.assign(readMap(map, frame, polar(), distance, jitter).mul(intensity))
+        dark.assign(readMap(map, frame, polar(), distance).mul(intensity))
       }
       if (isMapped === true) addMap()
       else if (isMapped !== false) If(isMapped, addMap)
@@ -121,7 +121,7 @@ export function shadowAt(
   shadowedAir: ShadowedAir,
   ray: Omit<AirViewRay, 'view'>,
   distance: Float,
-  readMap?: typeof softDark
+  readMap = darkPart
 ): { dark: Float; missing: Vec4 | null } {
   const { frame, maximumRho } = shadowedAir
   const { direction, jitter } = ray
