@@ -10,7 +10,7 @@ import {
 import type { HeightSample } from '../heights/HeightSource'
 import type { PageRequest, PageSource } from '../pages/PageSource'
 import { geographicGradient, geographicPlace, type GeographicPlace } from './geographic'
-import { fillSmooth, pagePlaces } from './pagePlaces'
+import { extentOf, fillSmooth, pagePlaces, type PagePlaces } from './pagePlaces'
 import { fillHoles, halved, type Raster } from './Raster'
 import {
   OVERSHOOT,
@@ -208,6 +208,7 @@ export class GridHeights implements PageSource {
     const { width, height, values } = this.#levels[level]
     const shrink = 2 ** -level
     const heights = new Float32Array(side * side)
+    if (this.#isBeyond(places)) return heights.fill(this.#outside)
     const insideAt = (i: number): number => {
       const x = places.x[i] * shrink - 0.5
       const y = places.y[i] * shrink - 0.5
@@ -222,6 +223,20 @@ export class GridHeights implements PageSource {
         : inside
     }
     return heights
+  }
+
+  /** True if all places are so far outside of the grid that `outside` is their height. */
+  #isBeyond(places: PagePlaces): boolean {
+    const { west, east, north, south } = extentOf(places)
+    const { width, height } = this.#levels[0]
+    const rows = this.#fade / this.#stepY / (this.#isFlat ? 1 : this.#radii.x)
+    if (south <= -rows || north >= height + rows) return true
+    const parallel = (y: number): number => Math.cos(this.#north - y * this.#stepY)
+    const narrowest = this.#isFlat
+      ? 1
+      : this.#radii.x * Math.max(Math.min(parallel(north), parallel(south)), 1e-9)
+    const columns = this.#fade / this.#stepX / narrowest
+    return east <= -columns || west >= width + columns
   }
 
   /** Columns of a whole turn about the planet. */

@@ -1,5 +1,5 @@
 import { tileKey } from './mercator'
-import type { PagePlaces } from './pagePlaces'
+import { extentOf, type PagePlaces } from './pagePlaces'
 import { sampleRaster, valueInside, type RasterSample } from './RasterSampler'
 
 /** Heights of a tile, row by row from its north-west corner [m]; NaN where there is none. */
@@ -61,20 +61,15 @@ export class TilePyramid {
    */
   heightsBetween(
     z: number,
-    { x, y }: PagePlaces,
+    places: PagePlaces,
     find: FindTile
   ): ((place: number) => number) | null {
     this.#begin(find)
     const { size } = this
     const scale = size * 2 ** z
     const wide = this.wide * scale
-    let [west, east, north, south] = [Infinity, -Infinity, Infinity, -Infinity]
-    for (let i = 0; i < x.length; i++) {
-      if (x[i] < west) west = x[i]
-      if (x[i] > east) east = x[i]
-      if (y[i] < north) north = y[i]
-      if (y[i] > south) south = y[i]
-    }
+    const { x, y } = places
+    const { west, east, north, south } = extentOf(places)
     let left = Math.floor(west * wide - 0.5) - 1
     let top = Math.floor(north * scale - 0.5) - 1
     let width = Math.floor(east * wide - 0.5) + 3 - left

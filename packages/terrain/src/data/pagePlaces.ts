@@ -75,6 +75,18 @@ export function pagePlaces(
   return { x, y, isSmooth: false }
 }
 
+/** Least and greatest coordinates of places. */
+export function extentOf({ x, y }: PagePlaces) {
+  let [west, east, north, south] = [Infinity, -Infinity, Infinity, -Infinity]
+  for (let i = 0; i < x.length; i++) {
+    if (x[i] < west) west = x[i]
+    if (x[i] > east) east = x[i]
+    if (y[i] < north) north = y[i]
+    if (y[i] > south) south = y[i]
+  }
+  return { west, east, north, south }
+}
+
 /** Steps of a page's heights per pixel of the data in the way between heights that are found exactly: a twelfth. */
 const FINENESS = 12
 

@@ -240,12 +240,14 @@ export class HeightPages {
   }
 }
 
-/** Least and greatest height; NaN if there is one among them. */
+/** Least and greatest height; NaN if one among them is not finite. */
 function boundsOf(heights: Float32Array): [number, number] {
-  let [least, most] = [Infinity, -Infinity]
+  let [least, most, zero] = [Infinity, -Infinity, 0]
+  // `Math.min` of each takes five times as long.
   for (const height of heights) {
-    least = Math.min(least, height)
-    most = Math.max(most, height)
+    if (height < least) least = height
+    if (height > most) most = height
+    zero += height - height
   }
-  return [least, most]
+  return [least + zero, most + zero]
 }
