@@ -195,13 +195,12 @@ export class HeightPages {
 
   /** @throws If they cannot be drawn. */
   #checked(heights: unknown): Float32Array {
-    const isArray = heights instanceof Float32Array
-    if (!isArray || heights.length !== this.#length) {
-      this.#wrong = { answer: isArray ? heights.length : heights }
-      throw new Error('no heights')
-    }
-    if (!boundsOf(heights).every(Number.isFinite)) throw new Error('heights that are not finite')
-    return heights
+    const length = heights instanceof Float32Array ? heights.length : heights
+    if (length !== this.#length) this.#wrong = { answer: length }
+    // Caught where they were asked for, which is done again later.
+    else if (boundsOf(heights as Float32Array).every(Number.isFinite))
+      return heights as Float32Array
+    throw new Error()
   }
 
   /** Slot for a page: a free one, or that of the least recently used tile; −1 if all are in use. */

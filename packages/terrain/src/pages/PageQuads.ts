@@ -65,8 +65,6 @@ export class PageQuads {
     geometry.name = 'Welkin.Terrain.pages'
     const corners = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0])
     geometry.setAttribute('position', new BufferAttribute(corners, 3))
-    const uv = new Float32Array([0, 0, 1, 0, 0, 1, 1, 1])
-    geometry.setAttribute('uv', new BufferAttribute(uv, 2))
     geometry.setIndex([0, 2, 1, 1, 2, 3])
     this.#attributes = ATTRIBUTES.map(name => {
       const values = new InstancedBufferAttribute(new Float32Array(4 * MOST), 4)

@@ -81,7 +81,7 @@ class GroundLightingModel extends PhysicalLightingModel {
   override start(builder: NodeBuilder): void {
     const { environmentNode, material, lightsNode } = builder as unknown as LightsBuilder
     this.#mirrors = Boolean(environmentNode || material.envNode || material.envMap)
-    this.#sunlight = vec3(0).toVar('sunlightOnGround') as unknown as Variable
+    this.#sunlight = vec3(0).toVar() as unknown as Variable
     if (this.#mirrors) {
       super.start(builder)
       return
@@ -131,7 +131,7 @@ class GroundLightingModel extends PhysicalLightingModel {
 
   override ambientOcclusion(builder: NodeBuilder): void {
     const { ambientOcclusion, reflectedLight } = builder.context as LightingContext
-    const factor = bouncedLight(albedo(), ambientOcclusion).toConst('bounced') as unknown as Vec3
+    const factor = bouncedLight(albedo(), ambientOcclusion).toConst() as unknown as Vec3
     const { indirectDiffuse } = reflectedLight
     const sun = albedo().mul(this.#sunlight!).mul(factor.sub(1)).div(Math.PI)
     indirectDiffuse.assign(indirectDiffuse.mul(factor).add(sun))

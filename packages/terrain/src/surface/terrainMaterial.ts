@@ -94,22 +94,22 @@ export function terrainMaterial(
   // Samples at a tile's edge may lie beyond it, where another page is.
   const inPage = texels.xy.clamp(0, atlas.surfaceSide - 1).toConst() as Vec2
   /** Texels of a texture of pages: of the tile's own page, and by its morph of its parent's. */
-  const ofPages = (map: Texture, name: string): Vec4 => {
+  const ofPages = (map: Texture): Vec4 => {
     const page = texture(map) as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } }
     const at = (texel: Vec2): Vec4 => page.sample(texel.add(0.5).div(vec2(width, height))).level(0)
     return Fn(() => {
-      const mixed = at(pages.xy.add(inPage)).toVar(`${name}Page`) as unknown as Vec4 & {
+      const mixed = at(pages.xy.add(inPage)).toVar() as unknown as Vec4 & {
         assign(value: Vec4): void
       }
       If(blend.x.greaterThan(0), () => {
         mixed.assign(mix(mixed, at(pages.zw.add(inPage.mul(0.5))), blend.x))
       })
       return mixed
-    })().toConst(name)
+    })().toConst()
   }
   // Gradient along the face's axes, height and patchiness.
-  const ground = ofPages(atlas.surface.texture, 'ground')
-  const picture = atlas.images === null ? null : ofPages(atlas.images.texture, 'picture')
+  const ground = ofPages(atlas.surface.texture)
+  const picture = atlas.images === null ? null : ofPages(atlas.images.texture)
   // Of the place itself: a varying less.
   const up = figure.upAt(reference.mul(REFERENCE_STEP).add(offset), stretch).toConst() as Vec3
   const { first, second } = faceAxes(face)
