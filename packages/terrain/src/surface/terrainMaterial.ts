@@ -13,7 +13,7 @@ import {
   vec4
 } from 'three/tsl'
 import type { Texture } from 'three'
-import type { MeshStandardNodeMaterial, Node, NodeBuilder } from 'three/webgpu'
+import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '@welkin/atmosphere'
 import type { PageAtlas } from '../pages/PageAtlas'
 import type { FixedOptions } from '../TerrainOptions'
@@ -59,6 +59,7 @@ const pictured = ({ rgb, a }: Vec4, made: Vec3, detail: Float): Vec3 => {
  *
  * @param grain - As of `grainTexture`.
  * @param code - Detail that it has code for: code that is skipped costs time, too.
+ * @param isDry - True without code for the sea.
  */
 export function terrainMaterial(
   atmosphere: Atmosphere,
@@ -67,8 +68,9 @@ export function terrainMaterial(
   uniforms: TerrainUniforms,
   figure: ShaderFigure,
   { resolution, detail, maps, mask }: FixedOptions,
-  code: GroundDetail = 2
-): MeshStandardNodeMaterial {
+  code: GroundDetail = 2,
+  isDry = false
+): GroundMaterial {
   const material = new GroundMaterial()
   material.name = 'Welkin.Terrain'
   material.metalness = 0
@@ -145,7 +147,11 @@ export function terrainMaterial(
   const depth = seaLevel.sub(ground.z).toConst() as Float
   const { footprint, spread } = surface
   const shore = { offset, depth, up, footprint, spread }
-  const sea = seaSurface(shore, windyVariance(seaVariance, blend.y), waveTime, code > 0)
+  const variance = windyVariance(seaVariance, blend.y)
+  // Compilers drop what is done to a share of 0.
+  const sea = isDry
+    ? { cover: float(0), slope: vec3(0), variance }
+    : seaSurface(shore, variance, waveTime, code > 0)
   const { cover } = sea
   material.water = cover
   const dry = normal.sub(surface.grain)

@@ -1,5 +1,6 @@
 import { Mesh, Vector2, Vector3 } from 'three'
 import type { Camera, InstancedBufferGeometry, Matrix4 } from 'three'
+import { airAtVertices, NEAR_AIR, type ViewNodes } from '@welkin/atmosphere'
 import type { MeshStandardNodeMaterial, Renderer } from 'three/webgpu'
 import { LEAST_FOOTPRINTS, type GroundDetail } from '../surface/tsl/grain'
 import type { Viewer } from './cpu/viewer'
@@ -13,6 +14,18 @@ export type DrawnTiles = Pick<TileSelection, 'tiles' | 'inView'>
 
 /** Properties that tiles far away have in common with their terrain. */
 const SHARED = ['receiveShadow', 'renderOrder', 'layers'] as const
+
+/** Materials of less code, in the order in which three draws them: what is near hides what is far. */
+const KINDS = [
+  { code: 2, isDry: true, isNear: true },
+  { code: 1, isDry: true, isNear: true },
+  { code: 1, isDry: false, isNear: true },
+  { code: 0, isDry: false, isNear: true },
+  { code: 0, isDry: false, isNear: false }
+] as const
+
+/** Height over the sea above which pages, which have float16, are above it, too: so much [m], and so much of it [–]. */
+const DRY = { height: 1, share: 1e-3 }
 
 const point = new Vector3()
 const forward = new Vector3()
@@ -51,29 +64,35 @@ export function leastFootprint(
   return least > 0 ? (distance - spread) * least ** 2 * view.pixel : 0
 }
 
-/**
- * Tiles in view so far away that a material of less code shows the same; they are drawn after the others. Shadow maps are drawn by the terrain itself.
- *
- * Once somebody has changed the terrain's material there are none: all tiles are then drawn with that.
- */
-export class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMaterial> {
-  tiles: readonly Tile[] = []
-  readonly #terrain: TileMesh
-  readonly #material: MeshStandardNodeMaterial
-  /** Properties of the terrain's material, as they were at first. */
-  readonly #properties: [string, unknown][]
+/** True of a tile above the sea. */
+const isDry = ({ lowest }: Tile, { seaLevel }: Sight): boolean =>
+  lowest > seaLevel + DRY.height + DRY.share * Math.abs(lowest)
 
-  /** @param footprint - Side of pixels on the ground from which on its material shows the same [m]. */
+/** True of a tile nearer than {@link NEAR_AIR}, with all heights that a planet may have. */
+const isNear = ({ center, radius, lowest, highest }: Tile, { position }: Sight): boolean =>
+  center.distanceTo(position) + radius + Math.max(Math.abs(lowest), Math.abs(highest)) < NEAR_AIR
+
+/** Number of the kind of a tile; −1 for one that needs all code. */
+function kindOf(tile: Tile, sight: Sight): number {
+  const footprint = leastFootprint(tile, sight)
+  const code = LEAST_FOOTPRINTS.findIndex(least => footprint > least || least === 0)
+  const near = isNear(tile, sight)
+  const dry = near && isDry(tile, sight)
+  return KINDS.findIndex(
+    kind => kind.code === code && (near || !kind.isNear) && (dry || !kind.isDry)
+  )
+}
+
+/**
+ * Tiles in view that a material of less code shows the same; they are drawn after the others. Shadow maps are drawn by the terrain itself.
+ */
+class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMaterial> {
   constructor(
     terrain: TileMesh,
     geometry: InstancedBufferGeometry,
-    material: MeshStandardNodeMaterial,
-    readonly footprint: number
+    material: MeshStandardNodeMaterial
   ) {
     super(geometry, material)
-    this.#terrain = terrain
-    this.#material = terrain.material
-    this.#properties = Object.entries(terrain.material).filter(([name]) => name !== 'version')
     this.name = 'Terrain.far'
     this.frustumCulled = false
     this.matrixAutoUpdate = this.matrixWorldAutoUpdate = false
@@ -82,28 +101,6 @@ export class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMate
       Object.defineProperty(this, name, { get: () => terrain[name], set() {} })
     }
     terrain.add(this)
-  }
-
-  /**
-   * Takes the tiles that are far away.
-   *
-   * @param tiles - In view.
-   * @returns The other ones.
-   */
-  take(tiles: readonly Tile[], sight: Sight): Tile[] {
-    const terrain = this.#terrain
-    const { material } = terrain
-    const isUntouched =
-      this.parent === terrain &&
-      material === this.#material &&
-      this.#properties.every(([name, value]) => (material as never)[name] === value)
-    const isFar = (tile: Tile): boolean =>
-      isUntouched && leastFootprint(tile, sight) > this.footprint
-    const parts = [[], []] as Tile[][]
-    for (const tile of tiles) parts[Number(isFar(tile))].push(tile)
-    this.tiles = parts[1]
-    this.geometry.instanceCount = this.tiles.length
-    return parts[0]
   }
 
   /** The terrain itself finds hits of rays. */
@@ -127,21 +124,29 @@ export type TakeFar = (
 ) => DrawnTiles
 
 /**
- * Has tiles far away drawn with materials of less code, which show the same: for the option `far` of a terrain.
+ * Has tiles drawn with materials of less code where these show the same: far away, above the sea, and within air that vertices have found. For the
+ * option `far` of a terrain.
  *
  * ```ts
  * const terrain = new Terrain(atmosphere, new MountainHeights(), { far: farTiles })
  * ```
+ *
+ * Once somebody has changed the terrain's material all tiles are drawn with that.
  */
 export function farTiles(
   terrain: TileMesh,
   grid: () => InstancedBufferGeometry,
-  materialOf: (code: GroundDetail) => MeshStandardNodeMaterial
+  materialOf: (code: GroundDetail, isDry: boolean) => MeshStandardNodeMaterial
 ): TakeFar {
-  // Three draws what was made first first: what is near hides what is far.
-  const meshes = ([1, 0] as const).map(
-    code => new FarTiles(terrain, grid(), materialOf(code), LEAST_FOOTPRINTS[code])
-  )
+  const { material: own } = terrain
+  const properties = Object.entries(own).filter(([name]) => name !== 'version')
+  const meshes = KINDS.map(kind => {
+    const material = materialOf(kind.code, kind.isDry)
+    if (kind.isNear) {
+      Object.assign(material, { airAtVertices: (view: ViewNodes) => airAtVertices(view, true) })
+    }
+    return new FarTiles(terrain, grid(), material)
+  })
   terrain.geometry.addEventListener('dispose', () => {
     for (const { geometry, material } of meshes) {
       geometry.dispose()
@@ -149,17 +154,26 @@ export function farTiles(
     }
   })
   return ({ tiles, inView }, { position, seaLevel }, camera, toECEF, renderer, write) => {
+    const { material } = terrain
+    const isUntouched =
+      material === own &&
+      properties.every(([name, value]) => (material as never)[name] === value) &&
+      meshes.every(({ parent }) => parent === terrain)
     const { elements } = camera.projectionMatrix
     const lines = renderer.getRenderTarget()?.height ?? renderer.getDrawingBufferSize(size).y
     forward.setFromMatrixColumn(camera.matrixWorld, 2).negate().transformDirection(toECEF)
     const pixel = elements[15] === 1 ? 0 : 2 / Math.abs(elements[5]) / lines
-    let left = tiles.slice(0, inView)
-    const far: Tile[] = []
-    for (const mesh of meshes.toReversed()) {
-      left = mesh.take(left, { position, seaLevel, forward, pixel })
-      write(mesh.geometry, mesh.tiles)
-      far.push(...mesh.tiles)
+    const sight = { position, seaLevel, forward, pixel }
+    const left: Tile[] = []
+    const parts = meshes.map((): Tile[] => [])
+    for (const tile of tiles.slice(0, inView)) {
+      const part = isUntouched ? parts[kindOf(tile, sight)] : undefined
+      ;(part ?? left).push(tile)
     }
-    return { tiles: [...left, ...far, ...tiles.slice(inView)], inView: left.length }
+    for (const [n, { geometry }] of meshes.entries()) {
+      write(geometry, parts[n])
+      geometry.instanceCount = parts[n].length
+    }
+    return { tiles: [...left, ...parts.flat(), ...tiles.slice(inView)], inView: left.length }
   }
 }
