@@ -86,9 +86,8 @@ export class TilePyramid {
       width = size
     } else {
       values = new Float32Array(width * height)
-      for (let n = 0; n < values.length; n++) {
-        const row = Math.floor(n / width)
-        values[n] = this.#pixelAt(z, left + n - row * width, top + row)
+      for (let n = 0; n < values.length; n += width) {
+        this.#copyRow(z, left, top + n / width, values.subarray(n, n + width))
       }
     }
     return i => valueInside(values, width, x[i] * wide - 0.5 - left, y[i] * scale - 0.5 - top)
@@ -118,9 +117,33 @@ export class TilePyramid {
     return this.#last
   }
 
+  /** Nearest row of the map. */
+  #inMap(z: number, row: number): number {
+    return Math.min(Math.max(row, 0), this.size * 2 ** z - 1)
+  }
+
+  /** Copies pixels of a row, those of a tile without holes at once. */
+  #copyRow(z: number, left: number, row: number, target: Float32Array): void {
+    const { size } = this
+    const inMap = this.#inMap(z, row)
+    for (let n = 0; n < target.length;) {
+      const column = left + n
+      const x = column - Math.floor(column / size) * size
+      const count = Math.min(size - x, target.length - n)
+      const tile = this.#tileAt(z, column, inMap)
+      if (tile?.hasHoles === false) {
+        const start = (inMap % size) * size + x
+        target.set(tile.heights.subarray(start, start + count), n)
+      } else {
+        for (let i = 0; i < count; i++) target[n + i] = this.#pixelAt(z, column + i, row)
+      }
+      n += count
+    }
+  }
+
   #pixelAt(z: number, column: number, row: number): number {
     const { size } = this
-    const inMap = Math.min(Math.max(row, 0), size * 2 ** z - 1)
+    const inMap = this.#inMap(z, row)
     const tile = this.#tileAt(z, column, inMap)
     if (tile !== undefined) {
       const x = column - Math.floor(column / size) * size
