@@ -33,7 +33,10 @@ const cases: [message: string, call: () => unknown][] = [
     'Lake: radius must be in [0, 100000], got 200000',
     () => new Lake(terrain, { ...basin, radius: 2e5 })
   ],
-  ['Lake: level must be finite, got NaN', () => new Lake(terrain, { ...basin, level: NaN })],
+  [
+    'Lake: level must be a finite number, got NaN',
+    () => new Lake(terrain, { ...basin, level: NaN })
+  ],
   [
     'Lake: needs a globe',
     () => new Lake(new Terrain(new Atmosphere({ flat: true }), heights, { resolution: 4 }), basin)

@@ -1,9 +1,7 @@
 import { airAtVertices, coveredPosition } from '@welkin/atmosphere'
 import {
-  BRDF_GGX,
   Fn,
   diffuseColor,
-  float,
   mix,
   normalView,
   roughness,
@@ -63,6 +61,25 @@ interface ReflectedLight {
 }
 
 /**
+ * Distribution and visibility of GGX's facets, times π: that of both directions correlated, by Hammon's approximation without roots.
+ *
+ * @see Walter et al. 2007, "Microfacet models for refraction through rough surfaces", eq. 33
+ * @see Hammon 2017, "PBR diffuse lighting for GGX+Smith microsurfaces", GDC
+ */
+function microfacets(
+  roughness: Float,
+  cosLight: Float,
+  cosViewer: Float,
+  cosHalfway: Float
+): Float {
+  const alpha = roughness.mul(roughness).toConst() as Float
+  const square = alpha.mul(alpha).toConst() as Float
+  const spread = cosHalfway.mul(cosHalfway).mul(square.sub(1)).add(1).toConst() as Float
+  const shadowed = mix(cosLight.mul(cosViewer).mul(2), cosLight.add(cosViewer), alpha)
+  return square.mul(0.5).div(spread.mul(spread).mul(shadowed).max(1e-9))
+}
+
+/**
  * Light of three's standard materials, with interreflection: light of sun and sky that the sides of hollows throw at each other.
  *
  * Where no environment is mirrored, highlights are of single scattering: multiple scattering would add a thousandth of the light on ground,
@@ -101,21 +118,21 @@ class GroundLightingModel extends PhysicalLightingModel {
       return
     }
     const { directDiffuse, directSpecular } = light.reflectedLight as unknown as ReflectedLight
-    const irradiance = color.mul(normalView.dot(direction).clamp()).toConst() as Vec3
     const toViewer = viewDirection()
-    const halfway = direction.add(toViewer).normalize()
+    const halfway = direction.add(toViewer).normalize().toConst()
+    const [cosLight, cosViewer, cosHalfway] = [direction, toViewer, halfway].map(
+      vector => normalView.dot(vector).clamp().toConst() as unknown as Float
+    )
+    const irradiance = color.mul(cosLight).div(Math.PI).toConst() as Vec3
     const reflectance = specularColor as unknown as Vec3
-    const gain = schlick(toViewer.dot(halfway))
+    const gain = schlick(toViewer.dot(halfway)).toConst() as Float
     const entering = reflectance.oneMinus().mul(gain.oneMinus())
-    directDiffuse.addAssign(irradiance.mul(albedo().mul(entering)).div(Math.PI))
-    const highlight = BRDF_GGX({
-      lightDirection: direction,
-      f0: reflectance,
-      f90: float(1),
-      roughness,
-      viewDirection: toViewer
-    })
-    directSpecular.addAssign(irradiance.mul(highlight as unknown as Vec3))
+    directDiffuse.addAssign(irradiance.mul(albedo().mul(entering)))
+    directSpecular.addAssign(
+      irradiance
+        .mul(mix(reflectance, vec3(1), gain))
+        .mul(microfacets(roughness as unknown as Float, cosLight, cosViewer, cosHalfway))
+    )
   }
 
   override indirect(builder: NodeBuilder): void {
