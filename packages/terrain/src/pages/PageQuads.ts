@@ -3,7 +3,6 @@ import {
   BufferAttribute,
   InstancedBufferAttribute,
   InstancedBufferGeometry,
-  InterpolationSamplingType,
   Mesh,
   NoBlending,
   OrthographicCamera
@@ -30,7 +29,7 @@ const point = new Vector3()
 /** An instance's numbers as they are: a mean of three equal ones might be another. */
 function flat(name: (typeof ATTRIBUTES)[number]): Vec4 {
   const handed = varying(attribute<'vec4'>(name, 'vec4'), `v_${name}`)
-  handed.setInterpolation(InterpolationSamplingType.FLAT)
+  handed.setInterpolation('flat')
   return handed
 }
 

@@ -1,6 +1,7 @@
 import { airAtVertices, coveredPosition } from '@welkin/atmosphere'
 import {
   Fn,
+  float,
   diffuseColor,
   mix,
   normalView,
@@ -169,8 +170,8 @@ export class GroundMaterial extends MeshStandardNodeMaterial {
   /** Normal of the ground without its stones, view space; null for the normal of the pixel. */
   ground: Vec3 | null = null
 
-  /** Share of a pixel that is water; null for none. */
-  water: Float | null = null
+  /** Share of a pixel that is water. */
+  water = float(0) as Float
 
   override setupLightingModel(): GroundLightingModel {
     return new GroundLightingModel(this.ground ?? normalView)
@@ -178,7 +179,6 @@ export class GroundMaterial extends MeshStandardNodeMaterial {
 
   override setupSpecular(): void {
     super.setupSpecular()
-    if (this.water === null) return
     const reflectance = vec3(mix(GROUND_FRESNEL, WATER_FRESNEL, this.water))
     for (const color of [specularColor, specularColorBlended]) {
       ;(color as unknown as Variable).assign(reflectance)

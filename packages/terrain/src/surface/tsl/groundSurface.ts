@@ -137,7 +137,7 @@ export function groundSurface(
   const stoniness = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
   const ownBump = mix(float(SAND_BUMP), stoniness, inland.max(bare)).mul(snow.mul(-0.96).add(1))
   const bump = either(ownBump, () => float(0)).toConst()
-  const ownRough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
+  const ownRough = mix(wet.mul(0.35).add(0.6), 0.75, snow)
   const rough = either(ownRough, ({ roughness }) => roughness.mul(wet.mul(0.37).add(0.63)))
   // Slopes that are smaller than a pixel roughen it: α² grows by twice their variance (Kaplanyan et al. 2016).
   const roughSquare = rough.mul(rough).toConst()

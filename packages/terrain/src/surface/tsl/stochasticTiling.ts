@@ -108,15 +108,15 @@ export function tilingVertices(reference: Vec3, offset: Vec3, cells: number): Ti
       random: latticeGradient(uvec3(ivec3(vertex).add(origin))).toConst()
     }
   }
-  const found = { nearest: vertexAt(nearest), next: vertexAt(next) }
   const shares = square.mul(square.dot(square).max(1e-9).inverseSqrt()).toConst() as Vec2
   return {
-    ...found,
+    nearest: vertexAt(nearest),
+    next: vertexAt(next),
     shares,
     each(add) {
-      add(found.nearest(), shares.x)
+      add(this.nearest(), shares.x)
       If(shares.y.greaterThan(0), () => {
-        add(found.next(), shares.y)
+        add(this.next(), shares.y)
       })
     }
   }
@@ -151,7 +151,8 @@ export function pieceOf(
 
 /** Sine of the slope from which on pictures lie on a tilted plane, and sine and cosine of its tilt: of 55°. */
 const STEEP = 0.53
-const TILT = { sine: 0.82, cosine: 0.57 }
+const SIN_TILT = 0.82
+const COS_TILT = 0.57
 
 /** Factor by which rounding finds the nearest of eight azimuths, each 45° wide to 2°. */
 const EIGHTHS = 1.2
@@ -183,11 +184,11 @@ export function frameNear(normal: Vec3, up: Vec3, axis: Vec3): { tangent: Vec3; 
   // To the north where it is flat: along the axes.
   const azimuth = mix(vec2(0, 1), eighth, isSteep).toConst() as Vec2
   const downhill = east.mul(azimuth.x).add(north.mul(azimuth.y)).toConst() as Vec3
-  const rise = isSteep.mul(TILT.sine)
+  const rise = isSteep.mul(SIN_TILT)
   return {
     tangent: downhill.cross(up).toConst(),
     bitangent: downhill
-      .mul(mix(1, TILT.cosine, isSteep))
+      .mul(mix(1, COS_TILT, isSteep))
       .sub(up.mul(rise))
       .toConst()
   }
