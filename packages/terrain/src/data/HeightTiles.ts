@@ -199,14 +199,17 @@ export class HeightTiles implements PageSource {
       const isWhole = [...keys].every(key => find(key)?.hasHoles === false)
       const scale = this.#pyramid.size * 2 ** z
       const pixels = [this.#store.wide * scale, scale] as const
-      const smoothAt = (i: number): number =>
-        between !== null && isWhole && !this.#isPolar(places.y[i]) ? between(i) : NaN
-      if (fillSmooth(places, side, pixels, smoothAt, heights)) return heights
+      const { north, south } = places.extent
+      if (between !== null && !this.#isPolar(north) && !this.#isPolar(south)) {
+        const isSmooth = isWhole && fillSmooth(places, side, pixels, between.at, heights)
+        return isSmooth ? heights : between.fill(heights)
+      }
+      const { x, y } = places
       for (let i = 0; i < heights.length; i++) {
         heights[i] =
-          between === null || this.#isPolar(places.y[i])
-            ? this.#sample(z, places.x[i], places.y[i], find, near).value
-            : between(i)
+          between === null || this.#isPolar(y[i])
+            ? this.#sample(z, x[i], y[i], find, near).value
+            : between.at(i)
       }
       return heights
     }

@@ -1,11 +1,17 @@
 import { tileKey } from './mercator'
-import { extentOf, type PagePlaces } from './pagePlaces'
-import { sampleRaster, valueInside, type RasterSample } from './RasterSampler'
+import type { PagePlaces } from './pagePlaces'
+import { fillInside, sampleRaster, valueInside, type RasterSample } from './RasterSampler'
 
 /** Heights of a tile, row by row from its north-west corner [m]; NaN where there is none. */
 export interface HeightTile {
   readonly heights: Float32Array
   readonly hasHoles: boolean
+}
+
+/** Heights of places between pixels: of one by its number, and of all. */
+export interface HeightsBetween {
+  readonly at: (place: number) => number
+  readonly fill: (target: Float32Array) => Float32Array
 }
 
 /** Pixels that are copied for a page, per place of it. */
@@ -59,17 +65,13 @@ export class TilePyramid {
    * Pixels about all places of a page, and a function of the height between them: those of a tile if it has all of them, else a copy. Null if there were
    * more than {@link MOST_PIXELS} times as many as places, as across the antimeridian.
    */
-  heightsBetween(
-    z: number,
-    places: PagePlaces,
-    find: FindTile
-  ): ((place: number) => number) | null {
+  heightsBetween(z: number, places: PagePlaces, find: FindTile): HeightsBetween | null {
     this.#begin(find)
     const { size } = this
     const scale = size * 2 ** z
     const wide = this.wide * scale
     const { x, y } = places
-    const { west, east, north, south } = extentOf(places)
+    const { west, east, north, south } = places.extent
     let left = Math.floor(west * wide - 0.5) - 1
     let top = Math.floor(north * scale - 0.5) - 1
     let width = Math.floor(east * wide - 0.5) + 3 - left
@@ -90,7 +92,11 @@ export class TilePyramid {
         this.#copyRow(z, left, top + n / width, values.subarray(n, n + width))
       }
     }
-    return i => valueInside(values, width, x[i] * wide - 0.5 - left, y[i] * scale - 0.5 - top)
+    return {
+      at: i => valueInside(values, width, x[i] * wide - 0.5 - left, y[i] * scale - 0.5 - top),
+      fill: target =>
+        fillInside(values, width, places, { scale: [wide, scale], first: [left, top] }, target)
+    }
   }
 
   /** Forgets the tile that was found last. */

@@ -243,7 +243,8 @@ export class HeightPages {
 function boundsOf(heights: Float32Array): [number, number] {
   let [least, most, zero] = [Infinity, -Infinity, 0]
   // `Math.min` of each takes five times as long.
-  for (const height of heights) {
+  for (let i = 0; i < heights.length; i++) {
+    const height = heights[i]
     if (height < least) least = height
     if (height > most) most = height
     zero += height - height
