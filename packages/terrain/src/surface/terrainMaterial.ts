@@ -2,6 +2,7 @@ import {
   Fn,
   If,
   float,
+  mat3,
   mix,
   sRGBTransferEOTF,
   texture,
@@ -41,6 +42,8 @@ import { WaterMirrorNode } from './WaterMirrorNode'
 /** True of the material that three draws shadow maps with. */
 export const isShadowPass = (material: object | null): boolean =>
   material !== null && 'isShadowPassMaterial' in material
+
+type Variable = Vec3 & { assign(value: Vec3): void }
 
 /** Varying: vertices assign it, pixels read it. */
 const handedOn = <T extends Node>(type: string, name: string): T & { assign(value: T): void } =>
@@ -155,8 +158,19 @@ export function terrainMaterial(
   const { cover } = sea
   material.water = cover
   const dry = normal.sub(surface.grain)
-  const lit = mix(dry, up.sub(sea.slope), cover)
-  const litView = (transformNormalToView(lit) as unknown as Vec3).toConst()
+  // Normal and roughness, and the variance of water's slopes: all that land does without is in one branch.
+  const found = Fn(() => {
+    const lit = dry.toVar() as unknown as Variable
+    const rough = vec3(surface.roughness, 0, 0).toVar() as unknown as Variable
+    If(cover.greaterThan(0), () => {
+      lit.assign(mix(lit, up.sub(sea.slope), cover))
+      const ofWater = sea.variance.sqrt().sqrt()
+      rough.assign(vec3(mix(rough.x, ofWater, cover), sea.variance, 0))
+    })
+    return mat3(lit, rough, vec3(0))
+  })().toConst() as unknown as { element(i: number): Vec3 }
+  const { x: roughness, y: unresolved } = found.element(1)
+  const litView = (transformNormalToView(found.element(0)) as unknown as Vec3).toConst()
   // Shadow maps ask for its alpha, and need not wait for the rest.
   material.colorNode = Fn(({ material: drawn }: NodeBuilder) => {
     if (isShadowPass(drawn)) return vec4(1)
@@ -166,12 +180,10 @@ export function terrainMaterial(
     const color = (picture === null
       ? made
       : pictured(picture, made, surface.detail.mul(uniforms.imageAlbedo))
-    ).toVar() as unknown as Vec3 & {
-      assign(value: Vec3): void
-    }
+    ).toVar() as unknown as Variable
     If(cover.greaterThan(0), () => {
       const cosViewer = litView.dot(viewDirection()).max(0).toConst() as Float
-      const entering = waterFresnel(cosViewer, sea.variance).oneMinus()
+      const entering = waterFresnel(cosViewer, unresolved).oneMinus()
       color.assign(mix(color, waterColor(color, depth).mul(entering), cover))
       if (code === 0) return
       If(footprint.lessThan(FOAM_GONE), () => {
@@ -182,11 +194,11 @@ export function terrainMaterial(
     return vec4(color, 1)
   })()
   // Beckmann's α² is the variance of slopes.
-  material.roughnessNode = mix(surface.roughness, sea.variance.sqrt().sqrt(), cover)
+  material.roughnessNode = roughness
   material.aoNode = mix(surface.occlusion, float(1), cover).mul(blend.w)
   material.normalNode = litView
   material.ground = transformNormalToView(normal) as unknown as Vec3
-  const water = { cover, normal: litView, variance: sea.variance }
+  const water = { cover, normal: litView, variance: unresolved }
   material.emissiveNode = new WaterMirrorNode(atmosphere, water)
   return material
 }
