@@ -99,8 +99,8 @@ export class Terrain extends GroundMesh {
     const inShader = isFlat(figure) ? planeInShader : ellipsoidInShader
     const grid = () => tileGrid(all.resolution, CAPACITY)
     const { atlas } = tiles.pages
-    const materialOf = (code?: GroundDetail, isDry?: boolean) =>
-      terrainMaterial(atmosphere, atlas, grain, uniforms, inShader, all, code, isDry)
+    const materialOf = (code?: GroundDetail) =>
+      terrainMaterial(atmosphere, atlas, grain, uniforms, inShader, all, code)
     super(grid(), materialOf(), uniforms)
     this.#takeFar = all.far?.(this, grid, materialOf)
     this.#figure = figure

@@ -62,7 +62,6 @@ const pictured = ({ rgb, a }: Vec4, made: Vec3, detail: Float): Vec3 => {
  *
  * @param grain - As of `grainTexture`.
  * @param code - Detail that it has code for: code that is skipped costs time, too.
- * @param isDry - True without code for the sea.
  */
 export function terrainMaterial(
   atmosphere: Atmosphere,
@@ -71,8 +70,7 @@ export function terrainMaterial(
   uniforms: TerrainUniforms,
   figure: ShaderFigure,
   { resolution, detail, maps, mask }: FixedOptions,
-  code: GroundDetail = 2,
-  isDry = false
+  code: GroundDetail = 2
 ): GroundMaterial {
   const material = new GroundMaterial()
   material.name = 'Welkin.Terrain'
@@ -151,10 +149,7 @@ export function terrainMaterial(
   const { footprint, spread } = surface
   const shore = { offset, depth, up, footprint, spread }
   const variance = windyVariance(seaVariance, blend.y)
-  // Compilers drop what is done to a share of 0.
-  const sea = isDry
-    ? { cover: float(0), slope: vec3(0), variance }
-    : seaSurface(shore, variance, waveTime, code > 0)
+  const sea = seaSurface(shore, variance, waveTime, code > 0)
   const { cover } = sea
   material.water = cover
   const dry = normal.sub(surface.grain)

@@ -1,6 +1,5 @@
 import { Mesh, Vector2, Vector3 } from 'three'
 import type { Camera, InstancedBufferGeometry, Matrix4 } from 'three'
-import { airAtVertices, NEAR_AIR, type ViewNodes } from '@welkin/atmosphere'
 import type { MeshStandardNodeMaterial, Renderer } from 'three/webgpu'
 import { LEAST_FOOTPRINTS, type GroundDetail } from '../surface/tsl/grain'
 import type { Viewer } from './cpu/viewer'
@@ -14,18 +13,6 @@ export type DrawnTiles = Pick<TileSelection, 'tiles' | 'inView'>
 
 /** Properties that tiles far away have in common with their terrain. */
 const SHARED = ['receiveShadow', 'renderOrder', 'layers'] as const
-
-/** Materials of less code, in the order in which three draws them: what is near hides what is far. */
-const KINDS = [
-  { code: 2, isDry: true, isNear: true },
-  { code: 1, isDry: true, isNear: true },
-  { code: 1, isDry: false, isNear: true },
-  { code: 0, isDry: false, isNear: true },
-  { code: 0, isDry: false, isNear: false }
-] as const
-
-/** Height over the sea above which pages, which have float16, are above it, too: so much [m], and so much of it [–]. */
-const DRY = { height: 1, share: 1e-3 }
 
 const point = new Vector3()
 const forward = new Vector3()
@@ -64,23 +51,10 @@ export function leastFootprint(
   return least > 0 ? (distance - spread) * least ** 2 * view.pixel : 0
 }
 
-/** True of a tile above the sea. */
-const isDry = ({ lowest }: Tile, { seaLevel }: Sight): boolean =>
-  lowest > seaLevel + DRY.height + DRY.share * Math.abs(lowest)
-
-/** True of a tile nearer than {@link NEAR_AIR}, with all heights that a planet may have. */
-const isNear = ({ center, radius, lowest, highest }: Tile, { position }: Sight): boolean =>
-  center.distanceTo(position) + radius + Math.max(Math.abs(lowest), Math.abs(highest)) < NEAR_AIR
-
-/** Number of the kind of a tile; −1 for one that needs all code. */
-function kindOf(tile: Tile, sight: Sight): number {
+/** Code that a tile needs. */
+const codeOf = (tile: Tile, sight: Sight): GroundDetail => {
   const footprint = leastFootprint(tile, sight)
-  const code = LEAST_FOOTPRINTS.findIndex(least => footprint > least || least === 0)
-  const near = isNear(tile, sight)
-  const dry = near && isDry(tile, sight)
-  return KINDS.findIndex(
-    kind => kind.code === code && (near || !kind.isNear) && (dry || !kind.isDry)
-  )
+  return footprint > LEAST_FOOTPRINTS[0] ? 0 : footprint > LEAST_FOOTPRINTS[1] ? 1 : 2
 }
 
 /**
@@ -124,8 +98,7 @@ export type TakeFar = (
 ) => DrawnTiles
 
 /**
- * Has tiles drawn with materials of less code where these show the same: far away, above the sea, and within air that vertices have found. For the
- * option `far` of a terrain.
+ * Has tiles far away drawn with materials of less code, which show the same: for the option `far` of a terrain.
  *
  * ```ts
  * const terrain = new Terrain(atmosphere, new MountainHeights(), { far: farTiles })
@@ -136,17 +109,11 @@ export type TakeFar = (
 export function farTiles(
   terrain: TileMesh,
   grid: () => InstancedBufferGeometry,
-  materialOf: (code: GroundDetail, isDry: boolean) => MeshStandardNodeMaterial
+  materialOf: (code: GroundDetail) => MeshStandardNodeMaterial
 ): TakeFar {
   const { material: own } = terrain
   const properties = Object.entries(own).filter(([name]) => name !== 'version')
-  const meshes = KINDS.map(kind => {
-    const material = materialOf(kind.code, kind.isDry)
-    if (kind.isNear) {
-      Object.assign(material, { airAtVertices: (view: ViewNodes) => airAtVertices(view, true) })
-    }
-    return new FarTiles(terrain, grid(), material)
-  })
+  const meshes = ([1, 0] as const).map(code => new FarTiles(terrain, grid(), materialOf(code)))
   terrain.geometry.addEventListener('dispose', () => {
     for (const { geometry, material } of meshes) {
       geometry.dispose()
@@ -167,8 +134,8 @@ export function farTiles(
     const left: Tile[] = []
     const parts = meshes.map((): Tile[] => [])
     for (const tile of tiles.slice(0, inView)) {
-      const part = isUntouched ? parts[kindOf(tile, sight)] : undefined
-      ;(part ?? left).push(tile)
+      const code = isUntouched ? codeOf(tile, sight) : 2
+      ;(code === 2 ? left : parts[1 - code]).push(tile)
     }
     for (const [n, { geometry }] of meshes.entries()) {
       write(geometry, parts[n])

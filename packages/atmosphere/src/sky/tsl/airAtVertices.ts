@@ -10,17 +10,13 @@ import { aerialPerspectiveTo, type AerialPerspective } from './aerialPerspective
  */
 const FAR = { height: 2.5, least: 2e5, most: 1e6 }
 
-/** Distance within which air is always found at vertices [m]. */
-export const NEAR_AIR = FAR.least
-
 /**
  * Clear air up to a fragment: of the vertices about it if it is near, as a material has it that gives this as its
  * `airAtVertices` to `aerialPerspectiveFog`. Within 0.6 % where triangles are small beside their distance.
  *
- * @param isNear - True of a material for what is nearer than {@link NEAR_AIR}.
  * @returns Null where there are sky layers, such as fog, which change too fast.
  */
-export function airAtVertices(view: ViewNodes, isNear = false): AerialPerspective | null {
+export function airAtVertices(view: ViewNodes): AerialPerspective | null {
   if (view.atmosphere.layers.length > 0) return null
   const near = Fn(() => {
     const { transmittance, inScatter } = aerialPerspectiveTo(view, positionView)
@@ -29,7 +25,6 @@ export function airAtVertices(view: ViewNodes, isNear = false): AerialPerspectiv
   const [transmittance, inScatter] = [0, 1].map(
     n => covered(near.element(n)).toVar() as unknown as Vec3 & { assign(value: Vec3): void }
   )
-  if (isNear) return { transmittance, inScatter }
   const position = coveredPosition()
   const far = view.height.mul(FAR.height).clamp(FAR.least, FAR.most)
   If(view.toMapped(position).length().greaterThan(far), () => {
