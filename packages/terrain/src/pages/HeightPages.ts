@@ -58,7 +58,7 @@ export class HeightPages {
 
   /** Number of pages that tiles have. */
   get count(): number {
-    return this.#owners.filter(owner => owner !== null).length
+    return this.#owners.filter(Boolean).length
   }
 
   /**

@@ -61,7 +61,6 @@ export class PageQuads {
       row: slot.z
     }
     const geometry = this.#geometry
-    geometry.name = 'Welkin.Terrain.pages'
     const corners = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0])
     geometry.setAttribute('position', new BufferAttribute(corners, 3))
     geometry.setIndex([0, 2, 1, 1, 2, 3])
@@ -91,7 +90,6 @@ export class PageQuads {
       fragmentNode: output
     })
     const mesh = new Mesh(this.#geometry, material)
-    mesh.name = material.name
     mesh.frustumCulled = false
     this.#meshes.push({ mesh, target })
   }

@@ -167,14 +167,14 @@ export class GroundMaterial extends MeshStandardNodeMaterial {
   /** See `FineMaterial` of `@welkin/atmosphere`: cells are small beside their distance. */
   readonly airAtVertices = airAtVertices
 
-  /** Normal of the ground without its stones, view space; null for the normal of the pixel. */
-  ground: Vec3 | null = null
+  /** Normal of the ground without its stones, view space. */
+  ground = normalView as Vec3
 
   /** Share of a pixel that is water. */
   water = float(0) as Float
 
   override setupLightingModel(): GroundLightingModel {
-    return new GroundLightingModel(this.ground ?? normalView)
+    return new GroundLightingModel(this.ground)
   }
 
   override setupSpecular(): void {

@@ -156,7 +156,7 @@ export function terrainMaterial(
   // Normal and roughness, and the variance of water's slopes: all that land does without is in one branch.
   const found = Fn(() => {
     const lit = dry.toVar() as unknown as Variable
-    const rough = vec3(surface.roughness, 0, 0).toVar() as unknown as Variable
+    const rough = vec3(surface.roughness).toVar() as unknown as Variable
     If(cover.greaterThan(0), () => {
       lit.assign(mix(lit, up.sub(sea.slope), cover))
       const ofWater = sea.variance.sqrt().sqrt()
