@@ -91,6 +91,7 @@ export class Lake extends Mesh<BufferGeometry, GroundMaterial> {
     this.center = center
     this.name = 'Lake'
     this.frustumCulled = false
+    this.receiveShadow = terrain.receiveShadow
     this.matrixAutoUpdate = this.matrixWorldAutoUpdate = false
     this.#setMaterial()
     this.#update()
