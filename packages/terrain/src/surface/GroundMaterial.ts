@@ -18,7 +18,6 @@ import {
 } from 'three/webgpu'
 import type { Float, Vec3 } from '../tsl-types'
 import { bouncedLight } from './tsl/bouncedLight'
-import { schlick } from './tsl/schlick'
 import { WATER_FRESNEL } from './tsl/seaSurface'
 
 /** Reflectance of ground at normal incidence: that of three's standard materials. */
@@ -112,8 +111,7 @@ class GroundLightingModel extends PhysicalLightingModel {
   override direct(light: LightingModelDirectInput, builder: NodeBuilder): void {
     const color = light.lightColor as Vec3
     const direction = light.lightDirection as Vec3
-    const cosine = this.ground.dot(direction).max(0) as unknown as Float
-    this.#sunlight?.addAssign(color.mul(cosine))
+    this.#sunlight?.addAssign(color.mul(this.ground.dot(direction).max(0) as unknown as Float))
     if (this.#mirrors) {
       super.direct(light, builder)
       return
@@ -126,7 +124,9 @@ class GroundLightingModel extends PhysicalLightingModel {
     )
     const irradiance = color.mul(cosLight).div(Math.PI).toConst() as Vec3
     const reflectance = specularColor as unknown as Vec3
-    const gain = schlick(toViewer.dot(halfway)).toConst() as Float
+    // Schlick's fifth power as three has it: by a Gaussian (Lagarde 2012).
+    const cosine = toViewer.dot(halfway).clamp().toConst()
+    const gain = cosine.mul(-5.55473).sub(6.98316).mul(cosine).exp2().toConst() as Float
     const entering = reflectance.oneMinus().mul(gain.oneMinus())
     directDiffuse.addAssign(irradiance.mul(albedo().mul(entering)))
     directSpecular.addAssign(
