@@ -161,8 +161,9 @@ export async function createTerrain(
   const terrain = new Terrain(atmosphere, heights, options) // #hidden
   terrain.castShadow = terrain.receiveShadow = true
   scene.add(terrain)
-  const lakes = LAKES.map(lake => new Lake(terrain, lake))
-  scene.add(...lakes)
+  // #shown scene.add(new Lake(terrain, { longitude: 0.51, latitude: 46.58, radius: 2000, level: 1516 }))
+  const lakes = LAKES.map(lake => new Lake(terrain, lake)) // #hidden
+  scene.add(...lakes) // #hidden
   // #endregion
   const { sun, post } = air
   prepareShadow(sun)

@@ -202,7 +202,7 @@ export class HeightTiles implements PageSource {
       const { north, south } = places.extent
       if (between !== null && !this.#isPolar(north) && !this.#isPolar(south)) {
         const isSmooth = isWhole && fillSmooth(places, side, pixels, between.at, heights)
-        return isSmooth ? heights : between.fill(heights)
+        return isSmooth ? heights : between.into(heights)
       }
       const { x, y } = places
       for (let i = 0; i < heights.length; i++) {

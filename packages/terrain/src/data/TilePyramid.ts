@@ -11,7 +11,7 @@ export interface HeightTile {
 /** Heights of places between pixels: of one by its number, and of all. */
 export interface HeightsBetween {
   readonly at: (place: number) => number
-  readonly fill: (target: Float32Array) => Float32Array
+  readonly into: (target: Float32Array) => Float32Array
 }
 
 /** Pixels that are copied for a page, per place of it. */
@@ -94,7 +94,7 @@ export class TilePyramid {
     }
     return {
       at: i => valueInside(values, width, x[i] * wide - 0.5 - left, y[i] * scale - 0.5 - top),
-      fill: target =>
+      into: target =>
         fillInside(values, width, places, { scale: [wide, scale], first: [left, top] }, target)
     }
   }

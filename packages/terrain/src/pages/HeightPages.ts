@@ -53,7 +53,7 @@ export class HeightPages {
     this.atlas = new PageAtlas(options)
     this.#baker = new PageBaker(source, figure, this.atlas, options)
     this.#images = imagery && new ImageLoader(imagery, tile => this.#baker.request(tile), onChange)
-    this.#owners = new Array<null>(this.atlas.capacity).fill(null)
+    this.#owners = Array.from({ length: this.atlas.capacity }, () => null)
   }
 
   /** Number of pages that tiles have. */

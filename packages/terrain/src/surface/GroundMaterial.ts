@@ -64,7 +64,7 @@ interface ReflectedLight {
  * Distribution and visibility of GGX's facets, times π: that of both directions correlated, by Hammon's approximation without roots.
  *
  * @see Walter et al. 2007, "Microfacet models for refraction through rough surfaces", eq. 33
- * @see Hammon 2017, "PBR diffuse lighting for GGX+Smith microsurfaces", GDC
+ * @see Guy & Agopian 2018, "Physically based rendering in Filament", §4.4.2 "Geometric shadowing (specular V)", after Hammon 2017
  */
 function microfacets(
   roughness: Float,
@@ -132,7 +132,7 @@ class GroundLightingModel extends PhysicalLightingModel {
     directSpecular.addAssign(
       irradiance
         .mul(mix(reflectance, vec3(1), gain))
-        .mul(microfacets(roughness as unknown as Float, cosLight, cosViewer, cosHalfway))
+        .mul(microfacets(roughness, cosLight, cosViewer, cosHalfway))
     )
   }
 

@@ -119,7 +119,7 @@ export class Lake extends Mesh<BufferGeometry, GroundMaterial> {
     const depth = attribute('depth', 'float') as unknown as Float
     material.colorNode = Fn(() => {
       const cosViewer = normal.dot(viewDirection()).max(0)
-      const entering = waterFresnel(cosViewer as unknown as Float, variance).oneMinus()
+      const entering = waterFresnel(cosViewer, variance).oneMinus()
       return waterColor(vec3(...BED), depth).mul(entering)
     })()
     material.normalNode = normal

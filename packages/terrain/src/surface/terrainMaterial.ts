@@ -192,7 +192,7 @@ export function terrainMaterial(
   material.roughnessNode = roughness
   material.aoNode = mix(surface.occlusion, float(1), cover).mul(blend.w)
   material.normalNode = litView
-  material.ground = transformNormalToView(normal) as unknown as Vec3
+  material.ground = transformNormalToView(normal)
   const water = { cover, normal: litView, variance: unresolved }
   material.emissiveNode = new WaterMirrorNode(atmosphere, water)
   return material

@@ -53,10 +53,7 @@ const LEAST = 0.55
 const sum = ({ x, y, z }: Vec3): Float => x.add(y).add(z)
 
 /** Two numbers, the larger first. */
-const sorted = (a: Float, b: Float): [Float, Float] => [
-  max(a, b).toConst() as Float,
-  min(a, b).toConst() as Float
-]
+const sorted = (a: Float, b: Float): [Float, Float] => [max(a, b).toConst(), min(a, b).toConst()]
 
 /**
  * The two vertices that count at a place, of a lattice of tetrahedra that is fixed to the planet and fills space.
@@ -86,7 +83,7 @@ export function tilingVertices(reference: Vec3, offset: Vec3, cells: number): Ti
   const [a, b] = sorted(keys.x, keys.y)
   const [c, d] = sorted(keys.z, keys.w)
   const [nearest, second] = sorted(a, c)
-  const [next, left] = sorted(second, max(b, d) as Float)
+  const [next, left] = sorted(second, max(b, d))
 
   // A vertex is 1 along the axes of as many of the largest parts as its number says.
   const vertexOf = (key: Float): Vec3 => {
