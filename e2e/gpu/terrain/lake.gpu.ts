@@ -98,6 +98,5 @@ gpuTest(
     expectTrue(lake.center.distanceTo(camera.position) < 10, 'the middle is elsewhere')
     lake.dispose()
     terrain.dispose()
-  },
-  { backends: ['webgpu'] }
+  }
 )
