@@ -28,7 +28,7 @@ const RINGS = 64
 const PLACES = 96
 
 /** Reflectance of the bed near the shore, wet gravel and silt, linear sRGB. */
-const BED = [0.11, 0.095, 0.07] as const
+const BED = [0.075, 0.078, 0.056] as const
 
 /** Depth of water for the waves, which have no shore here [m]. */
 const DEEP = 1000
