@@ -96,7 +96,7 @@ export function groundSurface(
     .mul(0.6)
     .add(spots)
     .add(sunny.mul(0.5))
-    .add(climate.mul(DRY_GRASS).add(lowland.mul(patch.mul(0.8).add(0.45))))
+    .add(climate.mul(DRY_GRASS).add(lowland.mul(0.4)))
   const straw = smoothstep(-0.3, 0.8, parched)
     .mul(0.75)
     .add(smoothstep(-900, 200, overTrees).mul(0.2))
