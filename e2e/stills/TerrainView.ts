@@ -7,10 +7,11 @@ import {
   SunDirectionalLight,
   type AutoExposureNode
 } from '@welkin/atmosphere'
-import { MountainHeights, Terrain, type GroundMaps } from '@welkin/terrain'
+import { Lake, MountainHeights, Terrain, type GroundMaps } from '@welkin/terrain'
 import { MathUtils, PerspectiveCamera, RenderTarget, Scene } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
+import { LAKES } from '../../stories/src/terrain/lakes'
 import { Vegetation } from '../../stories/src/terrain/vegetation/Vegetation'
 import { cobbles } from './cobbles'
 import type { TerrainStill } from './terrains'
@@ -28,6 +29,7 @@ export class TerrainView {
   readonly #terrain: Terrain
   readonly #maps: GroundMaps | null = null
   readonly #plants: Vegetation | null = null
+  readonly #lakes: Lake[]
   readonly #camera: PerspectiveCamera
   readonly #pipeline: RenderPipeline
   readonly #exposure: AutoExposureNode
@@ -56,6 +58,7 @@ export class TerrainView {
     const scene = new Scene()
     const sun = (this.#sun = this.#sunAt(camera))
     scene.add(sun, sun.target, new SkyLightProbe(atmosphere), terrain)
+    scene.add(...(this.#lakes = LAKES.map(lake => new Lake(terrain, lake))))
     if (view.plants) scene.add((this.#plants = new Vegetation(renderer, terrain)))
     scene.backgroundNode = skyBackground(atmosphere)
     scene.fogNode = aerialPerspectiveFog(atmosphere)
@@ -107,6 +110,7 @@ export class TerrainView {
     this.#pipeline.dispose()
     this.#exposure.dispose()
     this.#terrain.dispose()
+    for (const lake of this.#lakes) lake.dispose()
     this.#maps?.dispose()
     this.#plants?.dispose()
     this.#sun.dispose()

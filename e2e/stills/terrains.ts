@@ -41,6 +41,7 @@ export const terrains: TerrainStill[] = (
     ['scree', 'stones between meadow and rock', [0.508, 46.65, 1.7], [275, -12]],
     ['snow', 'snow and rock about a summit', [0.428, 47.372, 1.7], [200, -8]],
     ['shore', 'sand, wet where the sea begins', [1.6848, 46.15, 1.7], [45, -8]],
+    ['lake', 'a lake in a basin: shore, sky in it, waves', [0.5118, 46.563, 25], [10, -4]],
     ['1km', 'slopes, valleys and cliffs in low sun', [0.494, 46.35, 2e3], [338, -12]],
     ['10km', 'ranges without shimmer or grid', [0.45, 46.9, 1e4], [0, -12]],
     ['400km', 'a mountainous coast from orbit: woods, steppe, no net', [1, 44.5, 4e5], [0, -25]],

@@ -16,7 +16,7 @@ import {
   cloudSkyLight
 } from '@welkin/clouds'
 import type { CloudsNode } from '@welkin/clouds'
-import { MountainHeights, Terrain, terrainView } from '@welkin/terrain'
+import { Lake, MountainHeights, Terrain, terrainView } from '@welkin/terrain'
 import { PerspectiveCamera, Scene } from 'three'
 import { shadow } from 'three/tsl'
 import type { Node } from 'three/webgpu'
@@ -31,6 +31,7 @@ import {
 } from './scene'
 import { GroundCamera } from './terrain/GroundCamera'
 import { groundHandle } from './terrain/groundHandle'
+import { LAKES } from './terrain/lakes'
 import { Vegetation } from './terrain/vegetation/Vegetation'
 import type { GroundView } from './terrain/viewAlong'
 
@@ -50,6 +51,14 @@ export const VIEWS = {
     height: 30,
     heading: 45,
     pitch: 2
+  },
+  lake: {
+    label: 'Lake, 25 m',
+    longitude: 0.5118,
+    latitude: 46.563,
+    height: 25,
+    heading: 10,
+    pitch: -4
   },
   summit: {
     label: 'Summit, 2 m',
@@ -152,6 +161,9 @@ export async function createTerrain(
   const terrain = new Terrain(atmosphere, heights, options) // #hidden
   terrain.castShadow = terrain.receiveShadow = true
   scene.add(terrain)
+  // #shown scene.add(new Lake(terrain, { longitude: 0.51, latitude: 46.58, radius: 2000, level: 1516 }))
+  const lakes = LAKES.map(lake => new Lake(terrain, lake)) // #hidden
+  scene.add(...lakes) // #hidden
   // #endregion
   const { sun, post } = air
   prepareShadow(sun)
@@ -223,7 +235,7 @@ export async function createTerrain(
     },
     dispose() {
       setPlants(false)
-      for (const owned of [shafts, mountains, environment, cloudsNode]) owned?.dispose()
+      for (const owned of [shafts, mountains, environment, cloudsNode, ...lakes]) owned?.dispose()
     }
   })
 }

@@ -74,6 +74,9 @@ export const Plants: Story = { name: 'Meadow and woods', args: { vegetation: tru
 /** One take: a shore, a summit, orbit. */
 export const Take: Story = { name: 'Shore to orbit', args: { view: 'shore', tour: true } }
 
+/** A lake among mountains, 1,516 m above the sea. */
+export const Lake: Story = { args: { view: 'lake' } }
+
 /** Summits in clouds, valleys in mist. */
 export const Weather: Story = {
   name: 'Clouds and mist',

@@ -22,6 +22,8 @@ gpuTest('tiles far away look the same by materials of less code, at borders too'
   const scene = new Scene()
   scene.add(sun, sun.target, new SkyLightProbe(atmosphere), terrain)
   const camera = new PerspectiveCamera(60, SIZE.width / SIZE.height, 1, 1e9)
+  // Some of the near ground is under water.
+  terrain.set({ seaLevel: terrain.heightAt(PLACE.longitude, PLACE.latitude) - 70 })
   const height = terrain.heightAt(PLACE.longitude, PLACE.latitude) + HEIGHT
   ellipsoid.geodeticToECEF({ ...PLACE, height }, camera.position)
   camera.quaternion.setFromRotationMatrix(ellipsoid.localYUpFrame(camera.position, new Matrix4()))

@@ -98,9 +98,10 @@ export class Terrain extends GroundMesh {
     const grain = grainTexture()
     const inShader = isFlat(figure) ? planeInShader : ellipsoidInShader
     const grid = () => tileGrid(all.resolution, CAPACITY)
-    const materialOf = (code: GroundDetail) =>
-      terrainMaterial(atmosphere, tiles.pages.atlas, grain, uniforms, inShader, all, code)
-    super(grid(), materialOf(2), uniforms)
+    const { atlas } = tiles.pages
+    const materialOf = (code?: GroundDetail) =>
+      terrainMaterial(atmosphere, atlas, grain, uniforms, inShader, all, code)
+    super(grid(), materialOf(), uniforms)
     this.#takeFar = all.far?.(this, grid, materialOf)
     this.#figure = figure
     this.#uniforms = uniforms

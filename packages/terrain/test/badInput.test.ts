@@ -2,6 +2,7 @@ import { Atmosphere } from '@welkin/atmosphere'
 import {
   GroundMask,
   GroundMaps,
+  Lake,
   MountainHeights,
   Terrain,
   terrainView,
@@ -20,7 +21,26 @@ const terrain = make({ resolution: 4 })
 const albedo = new Texture()
 const painted: GroundMaskOptions = { materials: ['sand'], west: 0, east: 1, south: 0, north: 1 }
 
+const basin = { longitude: 8, latitude: 47, radius: 2000, level: 400 }
+
 const cases: [message: string, call: () => unknown][] = [
+  ["Lake: unknown option 'depth'", () => new Lake(terrain, wrong({ ...basin, depth: 1 }))],
+  [
+    'Lake: latitude must be in [-90, 90], got 91',
+    () => new Lake(terrain, { ...basin, latitude: 91 })
+  ],
+  [
+    'Lake: radius must be in [0, 100000], got 200000',
+    () => new Lake(terrain, { ...basin, radius: 2e5 })
+  ],
+  [
+    'Lake: level must be a finite number, got NaN',
+    () => new Lake(terrain, { ...basin, level: NaN })
+  ],
+  [
+    'Lake: needs a globe',
+    () => new Lake(new Terrain(new Atmosphere({ flat: true }), heights, { resolution: 4 }), basin)
+  ],
   ['Terrain: atmosphere must be an Atmosphere', () => new Terrain(wrong({}), heights)],
   [
     'Terrain.heightAt: use heightBelow in a flat world',

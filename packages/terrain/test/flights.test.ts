@@ -148,7 +148,7 @@ it('draws no stale page in fast flights, however late heights come, and ends wit
     renderer.info.frame++
     tiles.update(renderer as unknown as Renderer, viewer)
     if (checkPages(tiles) > 0) shown++
-    if (loader.open.size > 20) throw new Error(`${loader.open.size} requests wait`)
+    if (loader.open.size > 40) throw new Error(`${loader.open.size} requests wait`)
     await loader.nextFrame()
   }
   for (let frame = 1; frame < 800; frame++) {

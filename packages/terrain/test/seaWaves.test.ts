@@ -6,10 +6,13 @@ import { SEA_WAVES, seaSlopeVariance, WAVE_SHARE, WAVE_SLOPE } from '../src/surf
 it('waves have their share of the slopes that Cox and Munk measured, wherever up is', () => {
   // 7 m/s: a standard deviation of 11°.
   expect((Math.atan(Math.sqrt(seaSlopeVariance(7))) * 180) / Math.PI).toBeCloseTo(11.1, 1)
-  const ups = SEA_WAVES.flatMap(({ direction }) => [direction])
-  for (const up of ups) {
+  const directions = SEA_WAVES.map(({ vector }) => {
+    const size = Math.hypot(...vector)
+    return vector.map(part => part / size)
+  })
+  for (const up of directions) {
     let variance = 0
-    for (const { direction } of SEA_WAVES) {
+    for (const direction of directions) {
       const upward = direction.reduce((sum, part, i) => sum + part * up[i], 0)
       variance += (WAVE_SLOPE ** 2 / 2) * (1 - upward ** 2)
     }

@@ -10,9 +10,10 @@ import {
 import type { HeightSample } from '../heights/HeightSource'
 import type { PageRequest, PageSource } from '../pages/PageSource'
 import { geographicGradient, geographicPlace, type GeographicPlace } from './geographic'
-import { fillSmooth, pagePlaces } from './pagePlaces'
+import { fillSmooth, pagePlaces, type Extent } from './pagePlaces'
 import { fillHoles, halved, type Raster } from './Raster'
 import {
+  fillInside,
   OVERSHOOT,
   sampleRaster,
   STEEPENING,
@@ -208,20 +209,46 @@ export class GridHeights implements PageSource {
     const { width, height, values } = this.#levels[level]
     const shrink = 2 ** -level
     const heights = new Float32Array(side * side)
+    const { extent } = places
+    const { west, east, north, south } = this.#boundsIn(extent)
+    if (
+      extent.east <= west ||
+      extent.west >= east ||
+      extent.south <= north ||
+      extent.north >= south
+    )
+      return heights.fill(this.#outside)
+    const pixel = (cells: number): number => cells * shrink - 0.5
+    const isInside = (x: number, y: number): boolean =>
+      pixel(x) >= 1 && pixel(y) >= 1 && pixel(x) < width - 2 && pixel(y) < height - 2
     const insideAt = (i: number): number => {
-      const x = places.x[i] * shrink - 0.5
-      const y = places.y[i] * shrink - 0.5
-      const isInside = x >= 1 && y >= 1 && x < width - 2 && y < height - 2
-      return isInside ? valueInside(values, width, x, y) : NaN
+      const [x, y] = [places.x[i], places.y[i]]
+      return isInside(x, y) ? valueInside(values, width, pixel(x), pixel(y)) : NaN
     }
     if (fillSmooth(places, side, [shrink, shrink], insideAt, heights)) return heights
+    if (isInside(extent.west, extent.north) && isInside(extent.east, extent.south)) {
+      return fillInside(values, width, places, { scale: [shrink, shrink], first: [0, 0] }, heights)
+    }
     for (let i = 0; i < heights.length; i++) {
+      const [x, y] = [places.x[i], places.y[i]]
       const inside = insideAt(i)
-      heights[i] = Number.isNaN(inside)
-        ? this.#sample(places.x[i], places.y[i], level, raster).value
-        : inside
+      if (!Number.isNaN(inside)) heights[i] = inside
+      else if (x <= west || x >= east || y <= north || y >= south) heights[i] = this.#outside
+      else heights[i] = this.#sample(x, y, level, raster).value
     }
     return heights
+  }
+
+  /** Bounds, among places of an extent, beyond which `outside` is the height [cells]. */
+  #boundsIn({ north, south }: Extent): Extent {
+    const { width, height } = this.#levels[0]
+    const [longest, parallel] = this.#isFlat
+      ? [1, () => 1]
+      : [this.#radii.x, (y: number): number => Math.cos(this.#north - y * this.#stepY)]
+    const rows = this.#fade / this.#stepY / longest
+    const narrowest = longest * Math.max(Math.min(parallel(north), parallel(south)), 1e-9)
+    const columns = this.#fade / this.#stepX / narrowest
+    return { west: -columns, east: width + columns, north: -rows, south: height + rows }
   }
 
   /** Columns of a whole turn about the planet. */

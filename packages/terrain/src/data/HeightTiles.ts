@@ -191,22 +191,25 @@ export class HeightTiles implements PageSource {
     const find: FindTile = key => held.get(key) ?? this.#store.peek(key)
     const placesOf = (): PagePlaces =>
       pagePlaces(request, (at, target) => this.#project(at, target), 1)
-    const keys = this.#keysOf(z, placesOf(), side)
-    const fill = (): Float32Array => {
+    const first = placesOf()
+    const keys = this.#keysOf(z, first, side)
+    const fill = (places: PagePlaces): Float32Array => {
       const heights = new Float32Array(side * side)
-      const places = placesOf()
       const between = this.#pyramid.heightsBetween(z, places, find)
       const isWhole = [...keys].every(key => find(key)?.hasHoles === false)
       const scale = this.#pyramid.size * 2 ** z
       const pixels = [this.#store.wide * scale, scale] as const
-      const smoothAt = (i: number): number =>
-        between !== null && isWhole && !this.#isPolar(places.y[i]) ? between(i) : NaN
-      if (fillSmooth(places, side, pixels, smoothAt, heights)) return heights
+      const { north, south } = places.extent
+      if (between !== null && !this.#isPolar(north) && !this.#isPolar(south)) {
+        const isSmooth = isWhole && fillSmooth(places, side, pixels, between.at, heights)
+        return isSmooth ? heights : between.into(heights)
+      }
+      const { x, y } = places
       for (let i = 0; i < heights.length; i++) {
         heights[i] =
-          between === null || this.#isPolar(places.y[i])
-            ? this.#sample(z, places.x[i], places.y[i], find, near).value
-            : between(i)
+          between === null || this.#isPolar(y[i])
+            ? this.#sample(z, x[i], y[i], find, near).value
+            : between.at(i)
       }
       return heights
     }
@@ -215,9 +218,12 @@ export class HeightTiles implements PageSource {
       if (tile !== undefined) held.set(key, tile)
       return tile?.hasHoles !== false
     })
-    if (missing.length === 0) return fill()
+    if (missing.length === 0) return fill(first)
     const take = (key: number, tile: HeightTile): void => void held.set(key, tile)
-    return Promise.all(missing.map(key => this.#store.obtain(key, signal, take))).then(fill)
+    // By then other pages have filled the arrays of places.
+    return Promise.all(missing.map(key => this.#store.obtain(key, signal, take))).then(() =>
+      fill(placesOf())
+    )
   }
 
   /** Gives up all requests and lets the tiles go. */

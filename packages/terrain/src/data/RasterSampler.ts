@@ -101,6 +101,28 @@ export function valueInside(values: Float32Array, stride: number, x: number, y: 
   )
 }
 
+/** Part of a map that a raster shows. */
+export interface RasterWindow {
+  /** Pixels per unit of the map, across and down. */
+  readonly scale: readonly [number, number]
+  /** First column and row of the raster. */
+  readonly first: readonly [number, number]
+}
+
+/** Values at many places, all as {@link valueInside} has them: in one loop that does nothing else. */
+export function fillInside(
+  values: Float32Array,
+  stride: number,
+  { x, y }: { readonly x: Float64Array; readonly y: Float64Array },
+  { scale: [wide, tall], first: [left, top] }: RasterWindow,
+  target: Float32Array
+): Float32Array {
+  for (let i = 0; i < target.length; i++) {
+    target[i] = valueInside(values, stride, x[i] * wide - 0.5 - left, y[i] * tall - 0.5 - top)
+  }
+  return target
+}
+
 /** Most that the interpolation goes beyond the values about it, per difference of the largest and smallest [–]. */
 export const OVERSHOOT = 0.29
 

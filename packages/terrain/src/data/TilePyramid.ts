@@ -1,11 +1,17 @@
 import { tileKey } from './mercator'
 import type { PagePlaces } from './pagePlaces'
-import { sampleRaster, valueInside, type RasterSample } from './RasterSampler'
+import { fillInside, sampleRaster, valueInside, type RasterSample } from './RasterSampler'
 
 /** Heights of a tile, row by row from its north-west corner [m]; NaN where there is none. */
 export interface HeightTile {
   readonly heights: Float32Array
   readonly hasHoles: boolean
+}
+
+/** Heights of places between pixels: of one by its number, and of all. */
+export interface HeightsBetween {
+  readonly at: (place: number) => number
+  readonly into: (target: Float32Array) => Float32Array
 }
 
 /** Pixels that are copied for a page, per place of it. */
@@ -59,22 +65,13 @@ export class TilePyramid {
    * Pixels about all places of a page, and a function of the height between them: those of a tile if it has all of them, else a copy. Null if there were
    * more than {@link MOST_PIXELS} times as many as places, as across the antimeridian.
    */
-  heightsBetween(
-    z: number,
-    { x, y }: PagePlaces,
-    find: FindTile
-  ): ((place: number) => number) | null {
+  heightsBetween(z: number, places: PagePlaces, find: FindTile): HeightsBetween | null {
     this.#begin(find)
     const { size } = this
     const scale = size * 2 ** z
     const wide = this.wide * scale
-    let [west, east, north, south] = [Infinity, -Infinity, Infinity, -Infinity]
-    for (let i = 0; i < x.length; i++) {
-      if (x[i] < west) west = x[i]
-      if (x[i] > east) east = x[i]
-      if (y[i] < north) north = y[i]
-      if (y[i] > south) south = y[i]
-    }
+    const { x, y } = places
+    const { west, east, north, south } = places.extent
     let left = Math.floor(west * wide - 0.5) - 1
     let top = Math.floor(north * scale - 0.5) - 1
     let width = Math.floor(east * wide - 0.5) + 3 - left
@@ -91,12 +88,15 @@ export class TilePyramid {
       width = size
     } else {
       values = new Float32Array(width * height)
-      for (let n = 0; n < values.length; n++) {
-        const row = Math.floor(n / width)
-        values[n] = this.#pixelAt(z, left + n - row * width, top + row)
+      for (let n = 0; n < values.length; n += width) {
+        this.#copyRow(z, left, top + n / width, values.subarray(n, n + width))
       }
     }
-    return i => valueInside(values, width, x[i] * wide - 0.5 - left, y[i] * scale - 0.5 - top)
+    return {
+      at: i => valueInside(values, width, x[i] * wide - 0.5 - left, y[i] * scale - 0.5 - top),
+      into: target =>
+        fillInside(values, width, places, { scale: [wide, scale], first: [left, top] }, target)
+    }
   }
 
   /** Forgets the tile that was found last. */
@@ -123,9 +123,33 @@ export class TilePyramid {
     return this.#last
   }
 
+  /** Nearest row of the map. */
+  #inMap(z: number, row: number): number {
+    return Math.min(Math.max(row, 0), this.size * 2 ** z - 1)
+  }
+
+  /** Copies pixels of a row, those of a tile without holes at once. */
+  #copyRow(z: number, left: number, row: number, target: Float32Array): void {
+    const { size } = this
+    const inMap = this.#inMap(z, row)
+    for (let n = 0; n < target.length;) {
+      const column = left + n
+      const x = column - Math.floor(column / size) * size
+      const count = Math.min(size - x, target.length - n)
+      const tile = this.#tileAt(z, column, inMap)
+      if (tile?.hasHoles === false) {
+        const start = (inMap % size) * size + x
+        target.set(tile.heights.subarray(start, start + count), n)
+      } else {
+        for (let i = 0; i < count; i++) target[n + i] = this.#pixelAt(z, column + i, row)
+      }
+      n += count
+    }
+  }
+
   #pixelAt(z: number, column: number, row: number): number {
     const { size } = this
-    const inMap = Math.min(Math.max(row, 0), size * 2 ** z - 1)
+    const inMap = this.#inMap(z, row)
     const tile = this.#tileAt(z, column, inMap)
     if (tile !== undefined) {
       const x = column - Math.floor(column / size) * size

@@ -14,6 +14,16 @@ export interface PagePlaces {
   readonly y: Float64Array
   /** True where places are interpolated. */
   readonly isSmooth: boolean
+  /** Bounds of the coordinates. */
+  readonly extent: Extent
+}
+
+/** Least and greatest coordinates on a map. */
+export interface Extent {
+  readonly west: number
+  readonly east: number
+  readonly north: number
+  readonly south: number
 }
 
 const position = new Vector3()
@@ -63,7 +73,8 @@ export function pagePlaces(
     if (isWhole) {
       interpolate(nodesX, weights, x)
       interpolate(nodesY, weights, y)
-      return { x, y, isSmooth: true }
+      // Between exact places others are less than a step beyond them.
+      return { x, y, isSmooth: true, extent: extentOf(nodesX, nodesY, 1 / (side - 1)) }
     }
   }
   for (let n = 0; n < x.length; n++) {
@@ -72,7 +83,20 @@ export function pagePlaces(
     x[n] = at.x
     y[n] = at.y
   }
-  return { x, y, isSmooth: false }
+  return { x, y, isSmooth: false, extent: extentOf(x, y, 0) }
+}
+
+/** @param more - Part of their range by which they are widened. */
+function extentOf(x: Float64Array, y: Float64Array, more: number): Extent {
+  let [west, east, north, south] = [Infinity, -Infinity, Infinity, -Infinity]
+  for (let i = 0; i < x.length; i++) {
+    if (x[i] < west) west = x[i]
+    if (x[i] > east) east = x[i]
+    if (y[i] < north) north = y[i]
+    if (y[i] > south) south = y[i]
+  }
+  const [wide, tall] = [more * (east - west), more * (south - north)]
+  return { west: west - wide, east: east + wide, north: north - tall, south: south + tall }
 }
 
 /** Steps of a page's heights per pixel of the data in the way between heights that are found exactly: a twelfth. */

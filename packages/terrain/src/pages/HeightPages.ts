@@ -58,7 +58,7 @@ export class HeightPages {
 
   /** Number of pages that tiles have. */
   get count(): number {
-    return this.#owners.filter(owner => owner !== null).length
+    return this.#owners.filter(Boolean).length
   }
 
   /**
@@ -195,13 +195,12 @@ export class HeightPages {
 
   /** @throws If they cannot be drawn. */
   #checked(heights: unknown): Float32Array {
-    const isArray = heights instanceof Float32Array
-    if (!isArray || heights.length !== this.#length) {
-      this.#wrong = { answer: isArray ? heights.length : heights }
-      throw new Error('no heights')
-    }
-    if (!boundsOf(heights).every(Number.isFinite)) throw new Error('heights that are not finite')
-    return heights
+    const length = heights instanceof Float32Array ? heights.length : heights
+    if (length !== this.#length) this.#wrong = { answer: length }
+    // Caught where they were asked for, which is done again later.
+    else if (boundsOf(heights as Float32Array).every(Number.isFinite))
+      return heights as Float32Array
+    throw new Error()
   }
 
   /** Slot for a page: a free one, or that of the least recently used tile; −1 if all are in use. */
@@ -240,12 +239,15 @@ export class HeightPages {
   }
 }
 
-/** Least and greatest height; NaN if there is one among them. */
+/** Least and greatest height; NaN if one among them is not finite. */
 function boundsOf(heights: Float32Array): [number, number] {
-  let [least, most] = [Infinity, -Infinity]
-  for (const height of heights) {
-    least = Math.min(least, height)
-    most = Math.max(most, height)
+  let [least, most, zero] = [Infinity, -Infinity, 0]
+  // `Math.min` of each takes five times as long.
+  for (let i = 0; i < heights.length; i++) {
+    const height = heights[i]
+    if (height < least) least = height
+    if (height > most) most = height
+    zero += height - height
   }
-  return [least, most]
+  return [least + zero, most + zero]
 }

@@ -1,5 +1,5 @@
 import { FloatType, NearestFilter, RenderTarget, RGBAFormat } from 'three'
-import { Fn, attribute, float, ivec2, positionGeometry, texture, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, attribute, float, ivec2, positionGeometry, texture, vec2, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { Tile } from '../tiles/Tile'
 import type { Float, Vec2, Vec4 } from '../tsl-types'
@@ -38,7 +38,7 @@ export class HeightReadback {
     this.place = vec2(positionGeometry.x, slot.z.add(positionGeometry.y).div(rows))
     const atlas = texture(heights.texture) as unknown as { load(at: unknown): Vec4 }
     this.output = Fn(() => {
-      const first = float(uv().x.mul(width).floor().mul(4)).toConst()
+      const first = float(positionGeometry.x.mul(width).floor().mul(4)).toConst()
       const heightAt = (k: number): Float => {
         const i = first.add(k).min(this.#count - 1)
         const row = i.add(0.5).div(heightSide).floor().toConst()

@@ -6,8 +6,8 @@ const WAIT_FOR = 60
 /** Time after which what failed is asked for again [ms]. */
 const RETRY_AFTER = 5000
 
-/** Most loads at once. */
-const MOST_LOADS = 12
+/** Most loads at once: as many as pages in a frame until the first picture is full. */
+const MOST_LOADS = 32
 
 /** Data of a page that was asked for. */
 export interface PageLoad<T> {

@@ -3,7 +3,6 @@ import {
   BufferAttribute,
   InstancedBufferAttribute,
   InstancedBufferGeometry,
-  InterpolationSamplingType,
   Mesh,
   NoBlending,
   OrthographicCamera
@@ -30,7 +29,7 @@ const point = new Vector3()
 /** An instance's numbers as they are: a mean of three equal ones might be another. */
 function flat(name: (typeof ATTRIBUTES)[number]): Vec4 {
   const handed = varying(attribute<'vec4'>(name, 'vec4'), `v_${name}`)
-  handed.setInterpolation(InterpolationSamplingType.FLAT)
+  handed.setInterpolation('flat')
   return handed
 }
 
@@ -62,11 +61,8 @@ export class PageQuads {
       row: slot.z
     }
     const geometry = this.#geometry
-    geometry.name = 'Welkin.Terrain.pages'
     const corners = new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0])
     geometry.setAttribute('position', new BufferAttribute(corners, 3))
-    const uv = new Float32Array([0, 0, 1, 0, 0, 1, 1, 1])
-    geometry.setAttribute('uv', new BufferAttribute(uv, 2))
     geometry.setIndex([0, 2, 1, 1, 2, 3])
     this.#attributes = ATTRIBUTES.map(name => {
       const values = new InstancedBufferAttribute(new Float32Array(4 * MOST), 4)
@@ -94,7 +90,6 @@ export class PageQuads {
       fragmentNode: output
     })
     const mesh = new Mesh(this.#geometry, material)
-    mesh.name = material.name
     mesh.frustumCulled = false
     this.#meshes.push({ mesh, target })
   }

@@ -1,9 +1,8 @@
 import { airAtVertices, coveredPosition } from '@welkin/atmosphere'
 import {
-  BRDF_GGX,
   Fn,
-  diffuseColor,
   float,
+  diffuseColor,
   mix,
   normalView,
   roughness,
@@ -19,7 +18,6 @@ import {
 } from 'three/webgpu'
 import type { Float, Vec3 } from '../tsl-types'
 import { bouncedLight } from './tsl/bouncedLight'
-import { schlick } from './tsl/schlick'
 import { WATER_FRESNEL } from './tsl/seaSurface'
 
 /** Reflectance of ground at normal incidence: that of three's standard materials. */
@@ -63,6 +61,25 @@ interface ReflectedLight {
 }
 
 /**
+ * Distribution and visibility of GGX's facets, times π: that of both directions correlated, by Hammon's approximation without roots.
+ *
+ * @see Walter et al. 2007, "Microfacet models for refraction through rough surfaces", eq. 33
+ * @see Guy & Agopian 2018, "Physically based rendering in Filament", §4.4.2 "Geometric shadowing (specular V)", after Hammon 2017
+ */
+function microfacets(
+  roughness: Float,
+  cosLight: Float,
+  cosViewer: Float,
+  cosHalfway: Float
+): Float {
+  const alpha = roughness.mul(roughness).toConst() as Float
+  const square = alpha.mul(alpha).toConst() as Float
+  const spread = cosHalfway.mul(cosHalfway).mul(square.sub(1)).add(1).toConst() as Float
+  const shadowed = mix(cosLight.mul(cosViewer).mul(2), cosLight.add(cosViewer), alpha)
+  return square.mul(0.5).div(spread.mul(spread).mul(shadowed).max(1e-9))
+}
+
+/**
  * Light of three's standard materials, with interreflection: light of sun and sky that the sides of hollows throw at each other.
  *
  * Where no environment is mirrored, highlights are of single scattering: multiple scattering would add a thousandth of the light on ground,
@@ -81,7 +98,7 @@ class GroundLightingModel extends PhysicalLightingModel {
   override start(builder: NodeBuilder): void {
     const { environmentNode, material, lightsNode } = builder as unknown as LightsBuilder
     this.#mirrors = Boolean(environmentNode || material.envNode || material.envMap)
-    this.#sunlight = vec3(0).toVar('sunlightOnGround') as unknown as Variable
+    this.#sunlight = vec3(0).toVar() as unknown as Variable
     if (this.#mirrors) {
       super.start(builder)
       return
@@ -94,28 +111,29 @@ class GroundLightingModel extends PhysicalLightingModel {
   override direct(light: LightingModelDirectInput, builder: NodeBuilder): void {
     const color = light.lightColor as Vec3
     const direction = light.lightDirection as Vec3
-    const cosine = this.ground.dot(direction).max(0) as unknown as Float
-    this.#sunlight?.addAssign(color.mul(cosine))
+    this.#sunlight?.addAssign(color.mul(this.ground.dot(direction).max(0) as unknown as Float))
     if (this.#mirrors) {
       super.direct(light, builder)
       return
     }
     const { directDiffuse, directSpecular } = light.reflectedLight as unknown as ReflectedLight
-    const irradiance = color.mul(normalView.dot(direction).clamp()).toConst() as Vec3
     const toViewer = viewDirection()
-    const halfway = direction.add(toViewer).normalize()
+    const halfway = direction.add(toViewer).normalize().toConst()
+    const [cosLight, cosViewer, cosHalfway] = [direction, toViewer, halfway].map(
+      vector => normalView.dot(vector).clamp().toConst() as unknown as Float
+    )
+    const irradiance = color.mul(cosLight).div(Math.PI).toConst() as Vec3
     const reflectance = specularColor as unknown as Vec3
-    const gain = schlick(toViewer.dot(halfway))
+    // Schlick's fifth power as three has it: by a Gaussian (Lagarde 2012).
+    const cosine = toViewer.dot(halfway).clamp().toConst()
+    const gain = cosine.mul(-5.55473).sub(6.98316).mul(cosine).exp2().toConst() as Float
     const entering = reflectance.oneMinus().mul(gain.oneMinus())
-    directDiffuse.addAssign(irradiance.mul(albedo().mul(entering)).div(Math.PI))
-    const highlight = BRDF_GGX({
-      lightDirection: direction,
-      f0: reflectance,
-      f90: float(1),
-      roughness,
-      viewDirection: toViewer
-    })
-    directSpecular.addAssign(irradiance.mul(highlight as unknown as Vec3))
+    directDiffuse.addAssign(irradiance.mul(albedo().mul(entering)))
+    directSpecular.addAssign(
+      irradiance
+        .mul(mix(reflectance, vec3(1), gain))
+        .mul(microfacets(roughness, cosLight, cosViewer, cosHalfway))
+    )
   }
 
   override indirect(builder: NodeBuilder): void {
@@ -131,7 +149,7 @@ class GroundLightingModel extends PhysicalLightingModel {
 
   override ambientOcclusion(builder: NodeBuilder): void {
     const { ambientOcclusion, reflectedLight } = builder.context as LightingContext
-    const factor = bouncedLight(albedo(), ambientOcclusion).toConst('bounced') as unknown as Vec3
+    const factor = bouncedLight(albedo(), ambientOcclusion).toConst() as unknown as Vec3
     const { indirectDiffuse } = reflectedLight
     const sun = albedo().mul(this.#sunlight!).mul(factor.sub(1)).div(Math.PI)
     indirectDiffuse.assign(indirectDiffuse.mul(factor).add(sun))
@@ -149,19 +167,18 @@ export class GroundMaterial extends MeshStandardNodeMaterial {
   /** See `FineMaterial` of `@welkin/atmosphere`: cells are small beside their distance. */
   readonly airAtVertices = airAtVertices
 
-  /** Normal of the ground without its stones, view space; null for the normal of the pixel. */
-  ground: Vec3 | null = null
+  /** Normal of the ground without its stones, view space. */
+  ground = normalView as Vec3
 
-  /** Share of a pixel that is water; null for none. */
-  water: Float | null = null
+  /** Share of a pixel that is water. */
+  water = float(0) as Float
 
   override setupLightingModel(): GroundLightingModel {
-    return new GroundLightingModel(this.ground ?? normalView)
+    return new GroundLightingModel(this.ground)
   }
 
   override setupSpecular(): void {
     super.setupSpecular()
-    if (this.water === null) return
     const reflectance = vec3(mix(GROUND_FRESNEL, WATER_FRESNEL, this.water))
     for (const color of [specularColor, specularColorBlended]) {
       ;(color as unknown as Variable).assign(reflectance)

@@ -20,7 +20,8 @@ const SIDES = 6
 /** Tufts of grass and blades of each, their lengths [texels], and half of their width at the root [texels]. */
 const TUFTS = 520
 const BLADES = 17
-const BLADE_LENGTH = { least: 8, more: 34 }
+const SHORTEST_BLADE = 8
+const LONGER_BLADE = 34
 const BLADE_WIDTH = 1.55
 
 /** Distance between the spots that a blade is made of [texels]. */
@@ -38,7 +39,8 @@ const BLADE_CONTRAST = 0.6
 
 /** Tufts to a plant with three round leaves, and the radius of a leaf [texels]. */
 const TUFTS_TO_HERB = 3
-const LEAF = { least: 1.4, more: 1.8 }
+const SMALLEST_LEAF = 1.4
+const LARGER_LEAF = 1.8
 
 /** Repeatable random numbers in [0, 1). */
 function randomNumbers(seed: number): () => number {
@@ -103,7 +105,7 @@ function addBlade(
   turn: number,
   random: () => number
 ): void {
-  const length = BLADE_LENGTH.least + BLADE_LENGTH.more * random() ** 2
+  const length = SHORTEST_BLADE + LONGER_BLADE * random() ** 2
   const bend = (random() - 0.5) * (1.8 / length)
   const width = BLADE_WIDTH * (0.5 + 0.6 * random())
   const brightness = random() < DRY_BLADES ? DRY_LIGHT : 0.42 + 0.3 * random()
@@ -142,7 +144,7 @@ function grass(random: () => number): Float32Array {
 /** Lays a plant with three round leaves over what is there. */
 function addHerb(light: Float32Array, random: () => number): void {
   const [x, y] = [random() * SIZE, random() * SIZE]
-  const radius = LEAF.least + LEAF.more * random()
+  const radius = SMALLEST_LEAF + LARGER_LEAF * random()
   const turn = 2 * Math.PI * random()
   const value = 0.36 + 0.14 * random()
   for (let leaf = 0; leaf < 3; leaf++) {

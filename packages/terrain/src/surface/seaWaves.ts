@@ -1,5 +1,5 @@
 /** Period of the waves' pattern along each axis of ECEF: a step of references [m]. */
-const PERIOD = 256
+export const PERIOD = 256
 
 /** Longest and shortest wave [m], and their number. */
 const LONGEST = 14
@@ -13,14 +13,12 @@ export const WAVE_SHARE = 0.5
 const TURN = Math.PI * (3 - Math.sqrt(5))
 
 /** Gravity [m/s²]. */
-const GRAVITY = 9.81
+export const GRAVITY = 9.81
 
 /** A wave of the sea. */
 export interface SeaWave {
   /** Direction times periods in 256 m, ECEF axes: whole numbers, so that the pattern has no seam. */
   readonly vector: readonly [number, number, number]
-  /** Unit vector along it. */
-  readonly direction: readonly [number, number, number]
   /** Wavelength [m]. */
   readonly length: number
   /** Periods in a second, in deep water [1/s]. */
@@ -40,14 +38,8 @@ export const SEA_WAVES: readonly SeaWave[] = Array.from({ length: COUNT }, (_, i
   const level = Math.sqrt(1 - z * z)
   const unit = [level * Math.cos(TURN * place), level * Math.sin(TURN * place), z]
   const vector = unit.map(part => Math.round((part * PERIOD) / wanted)) as [number, number, number]
-  const periods = Math.hypot(...vector)
-  const length = PERIOD / periods
-  return {
-    vector,
-    direction: vector.map(part => part / periods) as [number, number, number],
-    length,
-    frequency: Math.sqrt(GRAVITY / (2 * Math.PI * length))
-  }
+  const length = PERIOD / Math.hypot(...vector)
+  return { vector, length, frequency: Math.sqrt(GRAVITY / (2 * Math.PI * length)) }
 })
 
 /**

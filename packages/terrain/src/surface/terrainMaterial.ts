@@ -2,6 +2,7 @@ import {
   Fn,
   If,
   float,
+  mat3,
   mix,
   sRGBTransferEOTF,
   texture,
@@ -13,7 +14,7 @@ import {
   vec4
 } from 'three/tsl'
 import type { Texture } from 'three'
-import type { MeshStandardNodeMaterial, Node, NodeBuilder } from 'three/webgpu'
+import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '@welkin/atmosphere'
 import type { PageAtlas } from '../pages/PageAtlas'
 import type { FixedOptions } from '../TerrainOptions'
@@ -42,6 +43,8 @@ import { WaterMirrorNode } from './WaterMirrorNode'
 export const isShadowPass = (material: object | null): boolean =>
   material !== null && 'isShadowPassMaterial' in material
 
+type Variable = Vec3 & { assign(value: Vec3): void }
+
 /** Varying: vertices assign it, pixels read it. */
 const handedOn = <T extends Node>(type: string, name: string): T & { assign(value: T): void } =>
   varyingProperty(type as never, `welkinTerrain${name}`) as unknown as T & {
@@ -68,7 +71,7 @@ export function terrainMaterial(
   figure: ShaderFigure,
   { resolution, detail, maps, mask }: FixedOptions,
   code: GroundDetail = 2
-): MeshStandardNodeMaterial {
+): GroundMaterial {
   const material = new GroundMaterial()
   material.name = 'Welkin.Terrain'
   material.metalness = 0
@@ -94,22 +97,22 @@ export function terrainMaterial(
   // Samples at a tile's edge may lie beyond it, where another page is.
   const inPage = texels.xy.clamp(0, atlas.surfaceSide - 1).toConst() as Vec2
   /** Texels of a texture of pages: of the tile's own page, and by its morph of its parent's. */
-  const ofPages = (map: Texture, name: string): Vec4 => {
+  const ofPages = (map: Texture): Vec4 => {
     const page = texture(map) as unknown as { sample(uv: Vec2): { level(n: number): Vec4 } }
     const at = (texel: Vec2): Vec4 => page.sample(texel.add(0.5).div(vec2(width, height))).level(0)
     return Fn(() => {
-      const mixed = at(pages.xy.add(inPage)).toVar(`${name}Page`) as unknown as Vec4 & {
+      const mixed = at(pages.xy.add(inPage)).toVar() as unknown as Vec4 & {
         assign(value: Vec4): void
       }
       If(blend.x.greaterThan(0), () => {
         mixed.assign(mix(mixed, at(pages.zw.add(inPage.mul(0.5))), blend.x))
       })
       return mixed
-    })().toConst(name)
+    })().toConst()
   }
   // Gradient along the face's axes, height and patchiness.
-  const ground = ofPages(atlas.surface.texture, 'ground')
-  const picture = atlas.images === null ? null : ofPages(atlas.images.texture, 'picture')
+  const ground = ofPages(atlas.surface.texture)
+  const picture = atlas.images === null ? null : ofPages(atlas.images.texture)
   // Of the place itself: a varying less.
   const up = figure.upAt(reference.mul(REFERENCE_STEP).add(offset), stretch).toConst() as Vec3
   const { first, second } = faceAxes(face)
@@ -145,12 +148,24 @@ export function terrainMaterial(
   const depth = seaLevel.sub(ground.z).toConst() as Float
   const { footprint, spread } = surface
   const shore = { offset, depth, up, footprint, spread }
-  const sea = seaSurface(shore, windyVariance(seaVariance, blend.y), waveTime, code > 0)
+  const variance = windyVariance(seaVariance, blend.y)
+  const sea = seaSurface(shore, variance, waveTime, code > 0)
   const { cover } = sea
   material.water = cover
   const dry = normal.sub(surface.grain)
-  const lit = mix(dry, up.sub(sea.slope), cover)
-  const litView = (transformNormalToView(lit) as unknown as Vec3).toConst()
+  // Normal and roughness, and the variance of water's slopes: all that land does without is in one branch.
+  const found = Fn(() => {
+    const lit = dry.toVar() as unknown as Variable
+    const rough = vec3(surface.roughness).toVar() as unknown as Variable
+    If(cover.greaterThan(0), () => {
+      lit.assign(mix(lit, up.sub(sea.slope), cover))
+      const ofWater = sea.variance.sqrt().sqrt()
+      rough.assign(vec3(mix(rough.x, ofWater, cover), sea.variance, 0))
+    })
+    return mat3(lit, rough, vec3(0))
+  })().toConst() as unknown as { element(i: number): Vec3 }
+  const { x: roughness, y: unresolved } = found.element(1)
+  const litView = (transformNormalToView(found.element(0)) as unknown as Vec3).toConst()
   // Shadow maps ask for its alpha, and need not wait for the rest.
   material.colorNode = Fn(({ material: drawn }: NodeBuilder) => {
     if (isShadowPass(drawn)) return vec4(1)
@@ -160,12 +175,10 @@ export function terrainMaterial(
     const color = (picture === null
       ? made
       : pictured(picture, made, surface.detail.mul(uniforms.imageAlbedo))
-    ).toVar() as unknown as Vec3 & {
-      assign(value: Vec3): void
-    }
+    ).toVar() as unknown as Variable
     If(cover.greaterThan(0), () => {
       const cosViewer = litView.dot(viewDirection()).max(0).toConst() as Float
-      const entering = waterFresnel(cosViewer, sea.variance).oneMinus()
+      const entering = waterFresnel(cosViewer, unresolved).oneMinus()
       color.assign(mix(color, waterColor(color, depth).mul(entering), cover))
       if (code === 0) return
       If(footprint.lessThan(FOAM_GONE), () => {
@@ -176,11 +189,11 @@ export function terrainMaterial(
     return vec4(color, 1)
   })()
   // Beckmann's α² is the variance of slopes.
-  material.roughnessNode = mix(surface.roughness, sea.variance.sqrt().sqrt(), cover)
+  material.roughnessNode = roughness
   material.aoNode = mix(surface.occlusion, float(1), cover).mul(blend.w)
   material.normalNode = litView
-  material.ground = transformNormalToView(normal) as unknown as Vec3
-  const water = { cover, normal: litView, variance: sea.variance }
+  material.ground = transformNormalToView(normal)
+  const water = { cover, normal: litView, variance: unresolved }
   material.emissiveNode = new WaterMirrorNode(atmosphere, water)
   return material
 }

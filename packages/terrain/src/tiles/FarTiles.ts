@@ -51,29 +51,22 @@ export function leastFootprint(
   return least > 0 ? (distance - spread) * least ** 2 * view.pixel : 0
 }
 
-/**
- * Tiles in view so far away that a material of less code shows the same; they are drawn after the others. Shadow maps are drawn by the terrain itself.
- *
- * Once somebody has changed the terrain's material there are none: all tiles are then drawn with that.
- */
-export class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMaterial> {
-  tiles: readonly Tile[] = []
-  readonly #terrain: TileMesh
-  readonly #material: MeshStandardNodeMaterial
-  /** Properties of the terrain's material, as they were at first. */
-  readonly #properties: [string, unknown][]
+/** Code that a tile needs. */
+const codeOf = (tile: Tile, sight: Sight): GroundDetail => {
+  const footprint = leastFootprint(tile, sight)
+  return footprint > LEAST_FOOTPRINTS[0] ? 0 : footprint > LEAST_FOOTPRINTS[1] ? 1 : 2
+}
 
-  /** @param footprint - Side of pixels on the ground from which on its material shows the same [m]. */
+/**
+ * Tiles in view that a material of less code shows the same; they are drawn after the others. Shadow maps are drawn by the terrain itself.
+ */
+class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMaterial> {
   constructor(
     terrain: TileMesh,
     geometry: InstancedBufferGeometry,
-    material: MeshStandardNodeMaterial,
-    readonly footprint: number
+    material: MeshStandardNodeMaterial
   ) {
     super(geometry, material)
-    this.#terrain = terrain
-    this.#material = terrain.material
-    this.#properties = Object.entries(terrain.material).filter(([name]) => name !== 'version')
     this.name = 'Terrain.far'
     this.frustumCulled = false
     this.matrixAutoUpdate = this.matrixWorldAutoUpdate = false
@@ -82,28 +75,6 @@ export class FarTiles extends Mesh<InstancedBufferGeometry, MeshStandardNodeMate
       Object.defineProperty(this, name, { get: () => terrain[name], set() {} })
     }
     terrain.add(this)
-  }
-
-  /**
-   * Takes the tiles that are far away.
-   *
-   * @param tiles - In view.
-   * @returns The other ones.
-   */
-  take(tiles: readonly Tile[], sight: Sight): Tile[] {
-    const terrain = this.#terrain
-    const { material } = terrain
-    const isUntouched =
-      this.parent === terrain &&
-      material === this.#material &&
-      this.#properties.every(([name, value]) => (material as never)[name] === value)
-    const isFar = (tile: Tile): boolean =>
-      isUntouched && leastFootprint(tile, sight) > this.footprint
-    const parts = [[], []] as Tile[][]
-    for (const tile of tiles) parts[Number(isFar(tile))].push(tile)
-    this.tiles = parts[1]
-    this.geometry.instanceCount = this.tiles.length
-    return parts[0]
   }
 
   /** The terrain itself finds hits of rays. */
@@ -132,16 +103,17 @@ export type TakeFar = (
  * ```ts
  * const terrain = new Terrain(atmosphere, new MountainHeights(), { far: farTiles })
  * ```
+ *
+ * Once somebody has changed the terrain's material all tiles are drawn with that.
  */
 export function farTiles(
   terrain: TileMesh,
   grid: () => InstancedBufferGeometry,
   materialOf: (code: GroundDetail) => MeshStandardNodeMaterial
 ): TakeFar {
-  // Three draws what was made first first: what is near hides what is far.
-  const meshes = ([1, 0] as const).map(
-    code => new FarTiles(terrain, grid(), materialOf(code), LEAST_FOOTPRINTS[code])
-  )
+  const { material: own } = terrain
+  const properties = Object.entries(own).filter(([name]) => name !== 'version')
+  const meshes = ([1, 0] as const).map(code => new FarTiles(terrain, grid(), materialOf(code)))
   terrain.geometry.addEventListener('dispose', () => {
     for (const { geometry, material } of meshes) {
       geometry.dispose()
@@ -149,17 +121,26 @@ export function farTiles(
     }
   })
   return ({ tiles, inView }, { position, seaLevel }, camera, toECEF, renderer, write) => {
+    const { material } = terrain
+    const isUntouched =
+      material === own &&
+      properties.every(([name, value]) => (material as never)[name] === value) &&
+      meshes.every(({ parent }) => parent === terrain)
     const { elements } = camera.projectionMatrix
     const lines = renderer.getRenderTarget()?.height ?? renderer.getDrawingBufferSize(size).y
     forward.setFromMatrixColumn(camera.matrixWorld, 2).negate().transformDirection(toECEF)
     const pixel = elements[15] === 1 ? 0 : 2 / Math.abs(elements[5]) / lines
-    let left = tiles.slice(0, inView)
-    const far: Tile[] = []
-    for (const mesh of meshes.toReversed()) {
-      left = mesh.take(left, { position, seaLevel, forward, pixel })
-      write(mesh.geometry, mesh.tiles)
-      far.push(...mesh.tiles)
+    const sight = { position, seaLevel, forward, pixel }
+    const left: Tile[] = []
+    const parts = meshes.map((): Tile[] => [])
+    for (const tile of tiles.slice(0, inView)) {
+      const code = isUntouched ? codeOf(tile, sight) : 2
+      ;(code === 2 ? left : parts[1 - code]).push(tile)
     }
-    return { tiles: [...left, ...far, ...tiles.slice(inView)], inView: left.length }
+    for (const [n, { geometry }] of meshes.entries()) {
+      write(geometry, parts[n])
+      geometry.instanceCount = parts[n].length
+    }
+    return { tiles: [...left, ...parts.flat(), ...tiles.slice(inView)], inView: left.length }
   }
 }

@@ -1,4 +1,4 @@
-import type { Vector3 } from 'three'
+import { Vector3 } from 'three'
 import type { GroundBounds } from '../heights/HeightSource'
 import { facesOf, type Figure } from './cpu/figure'
 import { horizonAngle, type Viewer } from './cpu/viewer'
@@ -153,6 +153,8 @@ export function distanceTo({ center, radius, edges }: Tile, point: Vector3): num
   return distance
 }
 
+const point = new Vector3()
+
 /** Level from which on tiles are flat discs, but for their heights. */
 const FLAT_LEVEL = 4
 
@@ -163,22 +165,18 @@ const FLAT_LEVEL = 4
  */
 function isInFrustum(tile: Tile, viewer: Viewer, size: number): boolean {
   const { position, planes, seaLevel } = viewer
-  const { center, normal, radius, level } = tile
+  const { normal, radius, level } = tile
   const lowest = Math.max(tile.lowest, seaLevel)
   const highest = Math.max(tile.highest, seaLevel)
-  const middle = (lowest + highest) / 2
-  const x = center.x - position.x + normal.x * middle
-  const y = center.y - position.y + normal.y * middle
-  const z = center.z - position.z + normal.z * middle
+  point.subVectors(tile.center, position).addScaledVector(normal, (lowest + highest) / 2)
   const across = radius * (1 + Math.max(highest, 0) / size)
   // The ground bends down by its sagitta.
   const along = (highest - lowest) / 2 + across ** 2 / size
-  for (const { normal: n, constant } of planes) {
-    const cosine = level < FLAT_LEVEL ? 1 : Math.abs(n.dot(normal))
+  return planes.every(plane => {
+    const cosine = level < FLAT_LEVEL ? 1 : Math.abs(plane.normal.dot(normal))
     const sine = level < FLAT_LEVEL ? 1 : Math.sqrt(Math.max(1 - cosine ** 2, 0))
-    if (n.x * x + n.y * y + n.z * z + constant < -(across * sine + along * cosine)) return false
-  }
-  return true
+    return plane.distanceToPoint(point) >= -(across * sine + along * cosine)
+  })
 }
 
 /** True of a tile near enough to cast shadows into view. */

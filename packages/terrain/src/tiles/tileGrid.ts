@@ -46,7 +46,6 @@ export function tileGrid(resolution: number, capacity: number): InstancedBufferG
     indices.push(edge[n], first + n, first + m, edge[n], first + m, edge[m])
   }
   const geometry = new InstancedBufferGeometry()
-  geometry.name = 'Welkin.Terrain'
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(positions), 3))
   geometry.setIndex(new BufferAttribute(new Uint32Array(indices), 1))
   for (const name of INSTANCE_ATTRIBUTES) {

@@ -136,6 +136,23 @@ describe('a grid', () => {
     for (const height of stripes.loadHeights(coarse)) expect(Math.abs(height - 50)).toBeLessThan(1)
   })
 
+  it('fills pages about its edges, wholly outside or not, with the heights that places have', () => {
+    let level = 0
+    for (const longitude of [9.86, 9.92, 9.98, 10.2, 10.42, 10.48, 10.54]) {
+      for (const latitude of [46.9, 46.95, 46.98, 47.15, 47.32, 47.36, 47.4]) {
+        const page = pageAt(longitude, latitude, 12)
+        const heights = grid.loadHeights(page)
+        if (heights.every(height => height === 100)) level++
+        for (const [i, place] of degreesOf(page).entries()) {
+          const { height } = sampleAt(grid, place.longitude, place.latitude)
+          expect(Math.abs(heights[i] - height)).toBeLessThan(0.01)
+        }
+      }
+    }
+    expect(level).toBeGreaterThan(10)
+    expect(level).toBeLessThan(40)
+  })
+
   it('finds pages much finer than its numbers to a thousandth of their differences, within 1 mm about a walker', () => {
     const rough = values.map((_, i) => 500 + 60 * Math.sin(12.9898 * i * i))
     const rugged = make({}, rough)

@@ -1,8 +1,10 @@
 /** Azimuths in which horizons are looked for. */
 export const AZIMUTHS = 4
 
-/** Distances at which they are looked for: `count` of them from `nearest` [m] on, each `factor` times the one before. */
-export const DISTANCES = { count: 2, nearest: 150, factor: 8 }
+/** Distances at which they are looked for, the nearest of them [m], and how many times the one before each is. */
+export const DISTANCES = 2
+export const NEAREST = 150
+export const FARTHER = 8
 
 /** Shortest wavelength that counts, as a fraction of the distance [–]. */
 export const FINENESS = 0.3
@@ -25,8 +27,8 @@ export function skyShare(
     const angle = (2 * Math.PI * azimuth) / AZIMUTHS
     const [sine, cosine] = [Math.sin(angle), Math.cos(angle)]
     let elevation = 0
-    for (let ring = 0; ring < DISTANCES.count; ring++) {
-      const distance = DISTANCES.nearest * DISTANCES.factor ** ring
+    for (let ring = 0; ring < DISTANCES; ring++) {
+      const distance = NEAREST * FARTHER ** ring
       const own = (slopeEast * sine + slopeNorth * cosine) * distance
       const rise = heightAt(distance * sine, distance * cosine) - here - own
       elevation = Math.max(elevation, Math.atan2(rise, distance))

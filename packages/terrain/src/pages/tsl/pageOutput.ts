@@ -1,4 +1,4 @@
-import { Fn, float, int, ivec2, texture, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, float, int, ivec2, positionGeometry, texture, vec2, vec4 } from 'three/tsl'
 import type { DataArrayTexture, Texture } from 'three'
 import type { HeightSource, SurfacePoint } from '../../heights/HeightSource'
 import { heightAndSky } from './skyShare'
@@ -46,7 +46,8 @@ interface PagePlace extends SurfacePoint {
 type Axes = ReturnType<typeof faceAxes>
 
 /** Column and row of the texel that is drawn. */
-const texelOf = (side: number): Vec2 => (uv() as unknown as Vec2).mul(side).floor().toConst()
+const texelOf = (side: number): Vec2 =>
+  (positionGeometry.xy as unknown as Vec2).mul(side).floor().toConst()
 
 /** @param cells - Steps between texels from the tile's first corner. */
 function placeAt(

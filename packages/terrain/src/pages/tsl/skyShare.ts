@@ -2,7 +2,7 @@ import { If, float, vec2, vec3, vec4 } from 'three/tsl'
 import type { HeightSource, SurfacePoint } from '../../heights/HeightSource'
 import { gradientAlong } from '../../surface/tsl/gradientAlong'
 import { loop, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
-import { AZIMUTHS, DISTANCES, FINENESS } from '../cpu/skyShare'
+import { AZIMUTHS, DISTANCES, FARTHER, FINENESS, NEAREST } from '../cpu/skyShare'
 
 type Variable<T> = T & { addAssign(value: T): void; assign(value: T): void }
 
@@ -29,16 +29,15 @@ export function heightAndSky(
   const ground = vec4(0).toVar() as unknown as Variable<Vec4>
   const rise = float(0).toVar() as unknown as Variable<Float>
   const sky = float(0).toVar() as unknown as Variable<Float>
-  const { count, nearest, factor } = DISTANCES
   // The first is the place itself: a source's code is there once.
-  loop('place', 1 + AZIMUTHS * count, index => {
+  loop('place', 1 + AZIMUTHS * DISTANCES, index => {
     const n = float(index).sub(1).toConst()
-    const azimuth = n.add(0.5).div(count).floor().toConst()
-    const ring = n.sub(azimuth.mul(count)).toConst()
+    const azimuth = n.add(0.5).div(DISTANCES).floor().toConst()
+    const ring = n.sub(azimuth.mul(DISTANCES)).toConst()
     const angle = azimuth.mul((2 * Math.PI) / AZIMUTHS).toConst()
     const direction = east.mul(angle.sin()).add(north.mul(angle.cos())).toConst()
     const isHere = n.lessThan(0)
-    const distance = isHere.select(0, float(factor).pow(ring).mul(nearest)).toConst() as Float
+    const distance = isHere.select(0, float(FARTHER).pow(ring).mul(NEAREST)).toConst() as Float
     const place = offset.add(direction.mul(distance)).toConst() as Vec3
     const detail = shortest.max(distance.mul(FINENESS)).toConst() as Float
     const sampled = source.sample({ reference, offset: place }, detail).toConst() as Vec4
@@ -47,7 +46,7 @@ export function heightAndSky(
     }).Else(() => {
       const slope = sampled.w.sub(ground.w).div(distance).sub(ground.xyz.dot(direction))
       rise.assign(slope.max(ring.lessThan(0.5).select(0, rise) as unknown as Float))
-      If(ring.greaterThan(count - 1.5), () => {
+      If(ring.greaterThan(DISTANCES - 1.5), () => {
         sky.addAssign(rise.mul(rise).add(1).reciprocal())
       })
     })

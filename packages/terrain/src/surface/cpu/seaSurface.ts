@@ -1,4 +1,4 @@
-import { SEA_WAVES, WAVE_SLOPE } from '../seaWaves'
+import { PERIOD, SEA_WAVES, WAVE_SLOPE } from '../seaWaves'
 
 type Vector = readonly [number, number, number]
 
@@ -32,7 +32,8 @@ export function seaWaves(
 ): { slope: Vector; variance: number } {
   const slope = [0, 0, 0]
   let shown = 0
-  for (const { direction, length, frequency } of SEA_WAVES) {
+  for (const { vector, length, frequency } of SEA_WAVES) {
+    const direction = vector.map(part => (part * length) / PERIOD) as unknown as Vector
     const steepest = Math.sqrt(seaVariance) * WAVE_SLOPE * Math.max(1 - footprint / length, 0)
     const phase = 2 * Math.PI * (dot(direction, offset) / length - frequency * seconds)
     const upward = dot(direction, up)

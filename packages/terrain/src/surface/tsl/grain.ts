@@ -6,11 +6,15 @@ import { LONGEST_KEPT } from './seaSurface'
 import { frameNear, pieceOf, tilingVertices } from './stochasticTiling'
 
 /** Sides of the picture on the ground [m], and longer side of a pixel's footprint at which nothing is left [m]. */
-const COARSE = { side: 17, gone: 1 }
-const FINE = { side: 2.1, gone: 0.14 }
+const COARSE_SIDE = 17
+const COARSE_GONE = 1
+const FINE_SIDE = 2.1
+const FINE_GONE = 0.14
 
 /** Brush and outcrops, where single stones are too small to be seen: footprints between which they come, and go [m]. */
-const CANOPY = { side: 150, from: 0.35, to: 0.8, fades: 5, gone: 10 }
+const CANOPY_SIDE = 150
+const CANOPY_COMES = [0.35, 0.8] as const
+const CANOPY_GOES = [5, 10] as const
 
 /**
  * Shorter sides of a footprint between which crowns come [m]. By the longer ones, as brush: at eye height crowns lie on the meadow from 40 m on, as flat
@@ -38,7 +42,7 @@ const FADE = 0.5
 export type GroundDetail = 0 | 1 | 2
 
 /** Least side of pixels on the ground that each is for: beyond it the others show the same [m]. */
-export const LEAST_FOOTPRINTS = [Math.max(CANOPY.gone, LONGEST_KEPT), COARSE.gone, 0] as const
+export const LEAST_FOOTPRINTS = [Math.max(CANOPY_GOES[1], LONGEST_KEPT), COARSE_GONE, 0] as const
 
 /** Place in a face's plane, and the ground there. */
 export interface GrainPlace {
@@ -86,12 +90,12 @@ export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
   const footprint = width.max(height).toConst() as Float
   // Between both sides of a pixel, nearer to the longer one where it is much longer: one look-up a picture, of little blur and little shimmer.
   const size = width.mul(height).sqrt().max(footprint.mul(LEAST_SIZE))
-  const share = ({ gone }: typeof FINE): Float =>
+  const share = (gone: number): Float =>
     float(1).sub(footprint.div(gone)).div(FADE).min(1).toConst()
-  const near = share(FINE)
-  const far = share(COARSE)
-  const canopy = smoothstep(CANOPY.from, CANOPY.to, footprint)
-    .mul(smoothstep(CANOPY.fades, CANOPY.gone, footprint).oneMinus())
+  const near = share(FINE_GONE)
+  const far = share(COARSE_GONE)
+  const canopy = smoothstep(...CANOPY_COMES, footprint)
+    .mul(smoothstep(...CANOPY_GOES, footprint).oneMinus())
     .toConst() as Float
   // Several vectors in one value: what the branches of both need is found once, and none of it far away.
   const layers = Fn(() => {
@@ -108,7 +112,7 @@ export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
         frame.tangent.mul(x).add(frame.bitangent.mul(y)).mul(GRAIN_SLOPE)
       If(canopy.greaterThan(0), () => {
         tilingVertices(place.reference, offset, CANOPY_CELLS).each(({ away, random }, share) => {
-          const piece = pieceOf(grain, frame, CANOPY.side, away, random.xy)
+          const piece = pieceOf(grain, frame, CANOPY_SIDE, away, random.xy)
           crowns.addAssign(piece.mul(share.mul(canopy)))
         })
         const raised = smoothstep(...CROWNS, width.min(height)).toConst()
@@ -118,10 +122,10 @@ export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
       if (detail < 2) return
       If(far.greaterThan(0), () => {
         tilingVertices(place.reference, offset, CELLS).each(({ away, random }, share) => {
-          const boulders = pieceOf(grain, frame, COARSE.side, away, random.xy)
+          const boulders = pieceOf(grain, frame, COARSE_SIDE, away, random.xy)
           coarse.addAssign(boulders.mul(share.mul(far)))
           If(near.greaterThan(0), () => {
-            const stones = pieceOf(grain, frame, FINE.side, away, random.zx)
+            const stones = pieceOf(grain, frame, FINE_SIDE, away, random.zx)
             fine.addAssign(stones.mul(share.mul(near)))
           })
         })
@@ -130,7 +134,7 @@ export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
       })
     }
     // Seen from afar there are none of them.
-    if (detail > 0) If(footprint.lessThan(CANOPY.gone), find)
+    if (detail > 0) If(footprint.lessThan(CANOPY_GOES[1]), find)
     return mat4(
       vec4(fineSlope, fine.z),
       vec4(coarseSlope, coarse.z),

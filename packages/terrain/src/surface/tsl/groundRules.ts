@@ -39,11 +39,11 @@ const SPREAD = 0.12
 const MOST_SPREAD = 450
 
 /**
- * Deviation of patches that a pixel of {@link PATCHES_GONE} does not show: a share of it is woods then. It goes by the square root of its size, as
- * each octave of patches is 0.7 of the one before. By the size itself: woods from 400 km are spots with hard edges (*Terrain*, still 400km).
+ * Deviation of patches that a pixel of {@link PATCHES_GONE} does not show: a share of it is woods then. It goes by the power 3/4 of its size.
+ * By the square root, as the octaves of patches do, of 4,000 m: woods from 400 km are camouflage (*Terrain*, still 400km).
  */
 const PATCH_DEVIATION = 0.42
-const PATCHES_GONE = 4000
+const PATCHES_GONE = 800
 
 /** Height by which snow lies lower in hollows that see nothing of the sky [m], and slope by which more soil holds there. */
 const HOLLOW_SNOW = 700
@@ -154,7 +154,8 @@ export function groundRules(
     .sub(hollow.mul(HOLLOW_SOIL))
     .toConst()
 
-  const lost = grain.footprint.div(PATCHES_GONE).min(1).sqrt().mul(PATCH_DEVIATION).toConst()
+  const gone = grain.footprint.div(PATCHES_GONE).min(1).toConst()
+  const lost = gone.mul(gone.sqrt()).sqrt().mul(PATCH_DEVIATION).toConst()
   const moisture = patch
     .sub(dryness)
     .sub(climate.mul(DRY_WOODS))

@@ -96,7 +96,7 @@ export function groundSurface(
     .mul(0.6)
     .add(spots)
     .add(sunny.mul(0.5))
-    .add(climate.mul(DRY_GRASS).add(lowland.mul(0.55)))
+    .add(climate.mul(DRY_GRASS).add(lowland.mul(0.4)))
   const straw = smoothstep(-0.3, 0.8, parched)
     .mul(0.75)
     .add(smoothstep(-900, 200, overTrees).mul(0.2))
@@ -108,9 +108,7 @@ export function groundSurface(
   const blades = turf.mul(light.add(brush.mul(0.35)).add(1).max(0.2))
   const grassland = mix(blades, color(SOIL), smoothstep(0.08, 0.28, blade.negate()).mul(0.8))
   // Shrubs stand in it, more of them towards the woods.
-  const shrubs = smoothstep(0.3, 0.5, crown.add(patch.sub(dryness).mul(0.35)).sub(0.05)).toConst(
-    'shrubs'
-  )
+  const shrubs = smoothstep(0.3, 0.5, crown.add(patch.sub(dryness).mul(0.35)).sub(0.05)).toConst()
   const meadow = mix(grassland, color(SHRUB), shrubs.mul(0.75)).toConst() as Vec3
   const leaves = mix(
     color(FOREST),
@@ -139,7 +137,7 @@ export function groundSurface(
   const stoniness = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
   const ownBump = mix(float(SAND_BUMP), stoniness, inland.max(bare)).mul(snow.mul(-0.96).add(1))
   const bump = either(ownBump, () => float(0)).toConst()
-  const ownRough = mix(mix(float(0.6), float(0.95), wet), float(0.75), snow)
+  const ownRough = mix(wet.mul(0.35).add(0.6), 0.75, snow)
   const rough = either(ownRough, ({ roughness }) => roughness.mul(wet.mul(0.37).add(0.63)))
   // Slopes that are smaller than a pixel roughen it: α² grows by twice their variance (Kaplanyan et al. 2016).
   const roughSquare = rough.mul(rough).toConst()
@@ -153,9 +151,7 @@ export function groundSurface(
     .max(shrubs)
     .mul(bare.max(bareness).max(dryness).max(snow).oneMinus())
     .mul(inland)
-  const raised = mix(mix(bump.mul(0.55).max(0.06), float(0.7), leafy), float(0.06), snow).toConst(
-    'raised'
-  )
+  const raised = mix(mix(bump.mul(0.55).max(0.06), float(0.7), leafy), float(0.06), snow).toConst()
   const hollow = stone
     .add(boulder.mul(0.5))
     .min(0)

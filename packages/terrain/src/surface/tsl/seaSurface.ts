@@ -1,7 +1,7 @@
 import { Fn, If, exp, float, mix, smoothstep, uniformArray, vec3, vec4 } from 'three/tsl'
 import { Vector4 } from 'three'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
-import { SEA_WAVES, WAVE_SLOPE } from '../seaWaves'
+import { GRAVITY, PERIOD, SEA_WAVES, WAVE_SLOPE } from '../seaWaves'
 import { gradientAlong } from './gradientAlong'
 import { schlick } from './schlick'
 
@@ -67,10 +67,6 @@ export interface SeaPlace {
   readonly spread: Float
 }
 
-/** Constants that a loop reads. */
-const listed = (values: Vector4[]): { element(index: Int): Vec4 } =>
-  uniformArray(values, 'vec4') as unknown as { element(index: Int): Vec4 }
-
 type Variable = Vec4 & { assign(value: Vec4): void; addAssign(value: Vec4): void }
 
 /**
@@ -89,8 +85,8 @@ export function seaSurface(
   const { offset, depth, up, footprint, spread } = place
   const shallow = spread.mul(SHALLOW_SPREAD).max(SHALLOW)
   const cover = smoothstep(0, shallow, depth).toConst()
-  const vectors = listed(SEA_WAVES.map(wave => new Vector4(...wave.vector, wave.frequency)))
-  const directions = listed(SEA_WAVES.map(wave => new Vector4(...wave.direction, wave.length)))
+  const listed = SEA_WAVES.map(({ vector, frequency }) => new Vector4(...vector, frequency))
+  const vectors = uniformArray(listed, 'vec4') as unknown as { element(index: Int): Vec4 }
   const waves = Fn(() => {
     const sum = vec4(0).toVar() as unknown as Variable
     const find = (): void => {
@@ -98,15 +94,19 @@ export function seaSurface(
       // A loop: where there is no sea, the code of its waves costs time, too.
       loop('wave', SEA_WAVES.length, wave => {
         const { xyz: vector, w: frequency } = vectors.element(wave).toConst() as Vec4
-        const { xyz: direction, w: length } = directions.element(wave).toConst() as Vec4
-        const periods = offset.dot(vector).div(256).sub(seconds.mul(frequency))
-        const kept = footprint.div(length).oneMinus().max(0).mul(steepest).toConst()
+        // As their frequencies are those of deep water.
+        const perLength = frequency
+          .mul(frequency)
+          .mul((2 * Math.PI) / GRAVITY)
+          .toConst() as Float
+        const periods = offset.dot(vector).div(PERIOD).sub(seconds.mul(frequency))
+        const kept = footprint.mul(perLength).oneMinus().max(0).mul(steepest).toConst()
         const tilt = periods
           .fract()
           .mul(2 * Math.PI)
           .cos()
           .mul(kept)
-        sum.addAssign(vec4(direction.mul(tilt), kept.mul(kept).div(3)))
+        sum.addAssign(vec4(vector.mul(tilt.div(perLength.mul(PERIOD))), kept.mul(kept).div(3)))
       })
       sum.assign(vec4(gradientAlong(sum.xyz, up), sum.w))
     }

@@ -52,6 +52,9 @@ const LEAST = 0.55
 
 const sum = ({ x, y, z }: Vec3): Float => x.add(y).add(z)
 
+/** Two numbers, the larger first. */
+const sorted = (a: Float, b: Float): [Float, Float] => [max(a, b).toConst(), min(a, b).toConst()]
+
 /**
  * The two vertices that count at a place, of a lattice of tetrahedra that is fixed to the planet and fills space.
  *
@@ -68,23 +71,19 @@ export function tilingVertices(reference: Vec3, offset: Vec3, cells: number): Ti
   const skewed = place.add(sum(place).div(3)).toConst() as Vec3
   const corner = skewed.floor().toConst() as Vec3
   const part = skewed.sub(corner).toConst() as Vec3
-  const { x, y, z } = part
-  const [high, low] = [max(x, y).toConst() as Float, min(x, y).toConst() as Float]
-  const most = max(high, z).toConst() as Float
-  const least = min(low, z).toConst() as Float
-  const middle = max(low, min(high, z)).toConst() as Float
+  const [high, low] = sorted(part.x, part.y)
+  const [most, other] = sorted(high, part.z)
+  const [middle, least] = sorted(other, low)
 
   const weights = vec4(most.oneMinus(), most.sub(middle), middle.sub(least), least)
   const bits = floatBitsToUint(weights) as unknown as UVec4
   const cleared = bitAnd(bits as never, uvec4(0xfffffffc) as never)
   const numbered = bitOr(cleared as never, uvec4(0, 1, 2, 3) as never)
   const keys = (uintBitsToFloat(numbered) as unknown as Vec4).toConst() as Vec4
-  const [a, b] = [max(keys.x, keys.y).toConst(), min(keys.x, keys.y).toConst()] as Float[]
-  const [c, d] = [max(keys.z, keys.w).toConst(), min(keys.z, keys.w).toConst()] as Float[]
-  const [second, third] = [min(a, c).toConst(), max(b, d).toConst()] as Float[]
-  const nearest = max(a, c).toConst() as Float
-  const next = max(second, third).toConst() as Float
-  const left = min(second, third).toConst() as Float
+  const [a, b] = sorted(keys.x, keys.y)
+  const [c, d] = sorted(keys.z, keys.w)
+  const [nearest, second] = sorted(a, c)
+  const [next, left] = sorted(second, max(b, d))
 
   // A vertex is 1 along the axes of as many of the largest parts as its number says.
   const vertexOf = (key: Float): Vec3 => {
@@ -96,8 +95,7 @@ export function tilingVertices(reference: Vec3, offset: Vec3, cells: number): Ti
   const cellsOfReference = reference.mul(cells)
   const origin = ivec3(cellsOfReference.add(sum(cellsOfReference).div(3)).round()).toConst()
   const first = nearest.sub(left).toConst() as Float
-  const other = next.sub(left).sub(first.mul(LEAST)).max(0)
-  const weight = vec2(first, other).toConst() as Vec2
+  const weight = vec2(first, next.sub(left).sub(first.mul(LEAST)).max(0)).toConst() as Vec2
   const square = weight.mul(weight).toConst() as Vec2
   const vertexAt = (key: Float) => (): TilingVertex => {
     const vertex = corner.add(vertexOf(key)).toConst() as Vec3
@@ -107,15 +105,15 @@ export function tilingVertices(reference: Vec3, offset: Vec3, cells: number): Ti
       random: latticeGradient(uvec3(ivec3(vertex).add(origin))).toConst()
     }
   }
-  const found = { nearest: vertexAt(nearest), next: vertexAt(next) }
   const shares = square.mul(square.dot(square).max(1e-9).inverseSqrt()).toConst() as Vec2
   return {
-    ...found,
+    nearest: vertexAt(nearest),
+    next: vertexAt(next),
     shares,
     each(add) {
-      add(found.nearest(), shares.x)
+      add(this.nearest(), shares.x)
       If(shares.y.greaterThan(0), () => {
-        add(found.next(), shares.y)
+        add(this.next(), shares.y)
       })
     }
   }
@@ -150,7 +148,8 @@ export function pieceOf(
 
 /** Sine of the slope from which on pictures lie on a tilted plane, and sine and cosine of its tilt: of 55°. */
 const STEEP = 0.53
-const TILT = { sine: 0.82, cosine: 0.57 }
+const SIN_TILT = 0.82
+const COS_TILT = 0.57
 
 /** Factor by which rounding finds the nearest of eight azimuths, each 45° wide to 2°. */
 const EIGHTHS = 1.2
@@ -182,11 +181,11 @@ export function frameNear(normal: Vec3, up: Vec3, axis: Vec3): { tangent: Vec3; 
   // To the north where it is flat: along the axes.
   const azimuth = mix(vec2(0, 1), eighth, isSteep).toConst() as Vec2
   const downhill = east.mul(azimuth.x).add(north.mul(azimuth.y)).toConst() as Vec3
-  const rise = isSteep.mul(TILT.sine)
+  const rise = isSteep.mul(SIN_TILT)
   return {
     tangent: downhill.cross(up).toConst(),
     bitangent: downhill
-      .mul(mix(1, TILT.cosine, isSteep))
+      .mul(mix(1, COS_TILT, isSteep))
       .sub(up.mul(rise))
       .toConst()
   }

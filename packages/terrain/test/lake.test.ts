@@ -1,0 +1,61 @@
+import { Atmosphere } from '@welkin/atmosphere'
+import { GridHeights, Lake, Terrain } from '@welkin/terrain'
+import { Vector3 } from 'three'
+import { expect, it } from 'vitest'
+
+const middle = { longitude: 8.6, latitude: 47.2 }
+const heights = new GridHeights(new Float32Array(16).fill(380), {
+  width: 4,
+  height: 4,
+  west: 8,
+  east: 9,
+  south: 46.8,
+  north: 47.6,
+  outside: 380
+})
+
+it('lies at its level, bends with the planet, and knows how deep it is', () => {
+  const atmosphere = new Atmosphere({ frame: 'ecef' })
+  const { ellipsoid } = atmosphere
+  const terrain = new Terrain(atmosphere, heights, { resolution: 4 })
+  const lake = new Lake(terrain, { ...middle, radius: 20_000, level: 406 })
+  const { position, normal, depth } = lake.geometry.attributes
+  const point = new Vector3()
+  const up = new Vector3()
+  let farthest = 0
+  for (let i = 0; i < position.count; i++) {
+    point.fromBufferAttribute(position, i).applyMatrix4(lake.matrixWorld)
+    // Float32 has 20 km to 1 mm.
+    expect(Math.abs(ellipsoid.heightAt(point) - 406)).toBeLessThan(5e-3)
+    const off = up.fromBufferAttribute(normal, i).distanceTo(ellipsoid.surfaceNormal(point))
+    expect(off).toBeLessThan(1e-6)
+    expect(depth.getX(i)).toBeCloseTo(26, 3)
+    farthest = Math.max(farthest, point.distanceTo(lake.center))
+  }
+  expect(farthest).toBeGreaterThan(19_900)
+  expect(farthest).toBeLessThan(20_010)
+  // All triangles face up.
+  const corners = [0, 1, 2].map(() => new Vector3())
+  const { index } = lake.geometry
+  for (let i = 0; i < index!.count; i += 3) {
+    for (const [n, corner] of corners.entries()) {
+      corner.fromBufferAttribute(position, index!.getX(i + n))
+    }
+    const [a, b, c] = corners
+    const facing = b.sub(a).cross(c.sub(a)).dot(up.fromBufferAttribute(normal, 0))
+    expect(facing).toBeGreaterThan(0)
+  }
+})
+
+it('follows a world that is placed anywhere, in any units', () => {
+  const atmosphere = new Atmosphere()
+  atmosphere.place(middle)
+  atmosphere.metersPerUnit = 1000
+  const terrain = new Terrain(atmosphere, heights, { resolution: 4 })
+  const lake = new Lake(terrain, { ...middle, radius: 500, level: 406 })
+  const at = (): Vector3 => new Vector3().setFromMatrixPosition(lake.matrixWorld)
+  expect(at().distanceTo(new Vector3(0, 0.406, 0))).toBeLessThan(1e-6)
+  atmosphere.place({ ...middle, height: 400 })
+  lake.onBeforeRender()
+  expect(at().distanceTo(new Vector3(0, 0.006, 0))).toBeLessThan(1e-6)
+})
