@@ -173,7 +173,13 @@ export class CastLight {
     if (!this.#hasPass || this.#packed.length === 1)
       return { ray: this.#read(this.#marched.ray, here) }
     const fallen = parted(this.#read(this.#packed[1], here))
-    return { ray: fallen.value.sub(vec4(...RAY_OFFSET)).div(vec4(...RAY_SCALE)).toConst(), litFall: fallen.byte }
+    return {
+      ray: fallen.value
+        .sub(vec4(...RAY_OFFSET))
+        .div(vec4(...RAY_SCALE))
+        .toConst(),
+      litFall: fallen.byte
+    }
   }
 
   /** Part of the light that reaches a point of a ray: see `SeenPoints.lit`. */
