@@ -23,7 +23,6 @@ const SMOOTHNESS = 0.0796
  * four neighbours is high-pass, and nearly normal in that mean: its distribution function makes it uniform.
  *
  * @param pixel - Whole numbers.
- * @see Ulichney 1988, "Dithering with blue noise", Proc. IEEE 76 (1)
  */
 export function blueNoise(pixel: Vec2): Float {
   const seed = pixel.add(1).dot(vec2(1, ROW)).toConst() as Float
