@@ -13,6 +13,13 @@ import { sharpSample } from './sharpSample'
 const STILL_MOTION = 0.02
 
 /**
+ * Motion above which history is read between pixels in each frame [pixels], and the most that it is worth then [samples]. More: clouds blur
+ * while one turns, and for a second after (*Cockpit*); less: grain.
+ */
+const FAST_MOTION = 1
+const FAST_SAMPLES = 4
+
+/**
  * Error of the reprojection at which history is rejected: clouds at another distance than this pixel's [pixels].
  * Greater: near clouds trail over far ones as one flies past (*Storm*).
  */
@@ -81,12 +88,14 @@ export function reprojectHistory(
   const parallax = ratio.mul(shift).div(MAX_PARALLAX).oneMinus().clamp()
   const validity = isInside.select(passesDepthTest(clampedEnd, apart), 0).mul(parallax)
   const { gainChange, maxSamples } = frame
+  const isFast = motion.length().greaterThan(FAST_MOTION)
+  const most = isFast.select(maxSamples.min(FAST_SAMPLES), maxSamples)
   const isSameEnd = clampedEnd.sub(apart.y).abs().lessThan(SAME_DISTANCE)
   return {
     distance: apart.x,
     hasClouds: apart.z.greaterThan(0),
     light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
     stationarity: isSameEnd.select(shift.oneMinus().max(0), 0),
-    samples: apart.z.abs().min(maxSamples).mul(validity).toConst()
+    samples: apart.z.abs().min(most).mul(validity).toConst()
   }
 }
