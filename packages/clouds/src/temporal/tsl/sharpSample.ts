@@ -33,5 +33,5 @@ export function sharpSample(light: LevelTexture<Vec2>, at: Vec2, size: Vec2): Ve
     .map(([x, y, weight]) => light.sample(vec2(x, y).div(size)).level(0).mul(weight))
     .reduce((sum, each) => sum.add(each))
     .max(0)
-    .toConst() as Vec4
+    .toConst()
 }
