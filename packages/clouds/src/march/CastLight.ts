@@ -13,9 +13,8 @@ import { loop, type Float, type LevelTexture, type Vec2, type Vec3, type Vec4 } 
 import { marchedPixel, type MarchedTargets } from './tsl/marchedPixel'
 import { viewRayAt, type FrameInputs } from './tsl/viewRay'
 
-/** Factors and offsets that bring a marched ray's log₂ distances, transmittance and `packFound` into [0, 1]. */
-const RAY_SCALE = [1 / FARTHEST, 1 / FARTHEST, 1, 0.5] as const
-const RAY_OFFSET = [0, 0, 0, 0.5] as const
+/** Factors that bring a marched ray's log₂ distances, transmittance and steps into [0, 1]. */
+const RAY_SCALE = [1 / FARTHEST, 1 / FARTHEST, 1, 1] as const
 
 /** A number in [0, 1] and a byte in one float32: the byte is the whole part. */
 const withByte = (value: Vec4, byte: Vec4): Vec4 =>
@@ -133,7 +132,7 @@ export class CastLight {
         })
       })
       points.assign(withByte(shares, lit))
-      fallen?.assign(withByte(ray.mul(vec4(...RAY_SCALE)).add(vec4(...RAY_OFFSET)), litFall))
+      fallen?.assign(withByte(ray.mul(vec4(...RAY_SCALE)), litFall))
     })
   }
 
@@ -173,13 +172,7 @@ export class CastLight {
     if (!this.#hasPass || this.#packed.length === 1)
       return { ray: this.#read(this.#marched.ray, here) }
     const fallen = parted(this.#read(this.#packed[1], here))
-    return {
-      ray: fallen.value
-        .sub(vec4(...RAY_OFFSET))
-        .div(vec4(...RAY_SCALE))
-        .toConst(),
-      litFall: fallen.byte
-    }
+    return { ray: fallen.value.div(vec4(...RAY_SCALE)).toConst(), litFall: fallen.byte }
   }
 
   /** Part of the light that reaches a point of a ray: see `SeenPoints.lit`. */

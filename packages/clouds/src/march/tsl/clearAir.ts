@@ -29,13 +29,10 @@ const ROW_SHIFT = 5
 const BEFORE = 0.97
 const BEHIND = 1.1
 
-/**
- * Levels to an octave in which distances are kept, log₂ of the distance at the first [m], and the last. Fewer to an octave: slower, since
- * rays begin up to a level before the clouds, and steps are short near them.
- */
-const PER_OCTAVE = 8
+/** Levels to an octave in which distances are kept, log₂ of the distance at the first [m], and the last. */
+const PER_OCTAVE = 4
 const FIRST = 3
-const LAST = 124
+const LAST = 62
 
 /** Level of a ray that is clear to its end, beyond all others. */
 const CLEAR = LAST + 1
@@ -46,7 +43,7 @@ export const FARTHEST_KNOWN = 2 ** (FIRST + LAST / PER_OCTAVE)
 /** Steps over 256 are kept in as many parts. */
 const STEPS = 15
 
-/** Half floats hold whole numbers of 11 bits, and their sign. */
+/** Numbers of 11 bits, which half floats hold. */
 const BITS = 2 ** 11
 
 /** Clouds that a march has found on a ray. */
@@ -61,7 +58,7 @@ export interface FoundOnRay {
 }
 
 /**
- * Distance at which a ray's clouds begin, rounded down, and its steps, as a number in [−1, 1). A ray that met no cloud where it began
+ * Distance at which a ray's clouds begin, rounded down, and its steps, as a number in [0, 1). A ray that met no cloud where it began
  * remembers that place: a small cloud is between its pixels.
  */
 export function packFound({ first, until, end, steps }: FoundOnRay): Float {
@@ -74,7 +71,6 @@ export function packFound({ first, until, end, steps }: FoundOnRay): Float {
     .mul(STEPS + 1)
     .add(part)
     .div(BITS)
-    .sub(1)
 }
 
 /**
@@ -83,7 +79,7 @@ export function packFound({ first, until, end, steps }: FoundOnRay): Float {
  * @returns A whole number that `clearAir` reads, and steps over 256.
  */
 export function unpackFound(packed: Float): { code: Float; steps: Float } {
-  const bits = packed.add(1).mul(BITS).round().toConst() as Float
+  const bits = packed.mul(BITS).round().toConst() as Float
   const code = bits
     .div(STEPS + 1)
     .floor()

@@ -32,5 +32,5 @@ export function blueNoise(pixel: Vec2): Float {
   const high = own.sub(mean).div(SMOOTHNESS).toConst() as Float
   const half = 0.5 / SMOOTHNESS
   const ramp = high.add(half).exp().add(1).div(high.sub(half).exp().add(1))
-  return ramp.log().mul(SMOOTHNESS).clamp().toConst()
+  return ramp.log().mul(SMOOTHNESS).toConst()
 }
