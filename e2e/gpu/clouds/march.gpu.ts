@@ -1,7 +1,10 @@
 import { CloudLightTable, cloudPreset, cloudQualities, type CloudQuality } from '@welkin/clouds'
 import { float, vec3, vec4 } from 'three/tsl'
+import { FrameUniforms } from '../../../packages/clouds/src/march/FrameUniforms'
 import { QualityUniforms } from '../../../packages/clouds/src/march/quality'
 import { marchClouds } from '../../../packages/clouds/src/march/tsl/march'
+import { marchedPixel } from '../../../packages/clouds/src/march/tsl/marchedPixel'
+import type { FrameInputs } from '../../../packages/clouds/src/march/tsl/viewRay'
 import { random } from '../harness/atmosphere'
 import { cloudScene, mean } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -161,3 +164,47 @@ gpuTest(
   },
   { backends: ['webgpu'] }
 )
+
+/** Edge of the picture whose rays' noise is looked at [pixels]. */
+const NOISE_SIZE = 64
+
+gpuTest('noise of rays is uniform, even over few pixels, and has no weave', async t => {
+  const renderer = await t.createRenderer()
+  const frame = new FrameUniforms()
+  frame.size.value.setScalar(NOISE_SIZE)
+  frame.marchedSize.value.setScalar(NOISE_SIZE)
+  const inputs = Array.from({ length: NOISE_SIZE ** 2 }, () => [0])
+  const found = await evaluateOnGpu(
+    renderer,
+    inputs,
+    () => marchedPixel({ frame } as FrameInputs).noise
+  )
+  const at = (x: number, y: number): number => found[4 * (y * NOISE_SIZE + x)]
+  const places = inputs.map((_, i) => [i % NOISE_SIZE, Math.floor(i / NOISE_SIZE)] as const)
+  const values = places.map(([x, y]) => at(x, y))
+  const deviation = (all: readonly number[]): number =>
+    Math.sqrt(mean(all.map(value => (value - 0.5) ** 2)))
+  const squares = places
+    .filter(([x, y]) => x % 4 === 0 && y % 4 === 0)
+    .map(([x, y]) => mean(inputs.slice(0, 16).map((_, i) => at(x + (i % 4), y + (i >> 2)))))
+  // White noise: 12^{-1/2}, and a quarter of it.
+  const [all, coarse] = [deviation(values), deviation(squares)]
+  const likeness = (across: number, down: number): number =>
+    mean(
+      places
+        .filter(([x, y]) => x >= 3 && x < NOISE_SIZE - 3 && y < NOISE_SIZE - 3)
+        .map(([x, y]) => Math.cos(2 * Math.PI * (at(x, y) - at(x + across, y + down))))
+    )
+  const offsets = [0, 1, 2, 3].flatMap(down =>
+    [-3, -2, -1, 0, 1, 2, 3].map(across => [across, down])
+  )
+  const most = Math.max(
+    ...offsets.filter(([x, y]) => y > 0 || x > 0).map(([x, y]) => likeness(x, y))
+  )
+  t.note(
+    `deviation ${all.toFixed(3)}, of squares ${coarse.toFixed(4)}, pixels alike ${most.toFixed(2)}`
+  )
+  expectTrue(Math.abs(all - 12 ** -0.5) < 0.01, `noise deviates by ${all}`)
+  expectTrue(coarse < 0.5 * (12 ** -0.5 / 4), `squares of 16 pixels deviate by ${coarse}`)
+  expectTrue(most < 0.1, `pixels some way apart are alike by ${most}`)
+})

@@ -105,6 +105,18 @@ class Sky {
     return picture
   }
 
+  /** Accumulated samples of each pixel, of the last frame. */
+  async samples(): Promise<number[]> {
+    const { accumulated } = this.node.passes
+    const target = accumulated.distances.value.renderTarget!
+    const { width, height } = target
+    const bytes = await this.#renderer.readRenderTargetPixelsAsync(target, 0, 0, width, height, 1)
+    return Array.from({ length: width * height }, (_, i) => {
+      const [high, low] = [bytes[4 * i + 2], bytes[4 * i + 3]]
+      return Math.abs(256 * high + low - 2 ** 15) / 127
+    })
+  }
+
   dispose(): void {
     this.#dispose()
     this.node.dispose()
@@ -231,6 +243,20 @@ gpuTest(
   { backends: ['webgpu'], timeoutSeconds: 300 }
 )
 
+/**
+ * Mean samples of the pixels that have been in sight for eight frames and more of a turn by 10 pixels a frame: half of a round of `high`. If
+ * history counted less while the view turns, they were the last frame's alone, 0.16.
+ */
+async function samplesAfterTurn(sky: Sky): Promise<number> {
+  for (let i = 12; i >= 0; i--) {
+    sky.turn(-0.4 * i)
+    await sky.draw()
+  }
+  const counts = await sky.samples()
+  const [columns] = narrow.size
+  return mean(counts.filter((_, i) => i % columns < columns / 3))
+}
+
 // Six frames after a turn new pixels of `medium` have 6 samples of 16, those of `high` 6 of 9: 2.2 and 1.0 %.
 for (const [quality, most] of [
   ['medium', 0.024],
@@ -256,6 +282,11 @@ for (const [quality, most] of [
             found.push(apart(blockMeans(await sky.draw()), expected) / level)
           t.note(`off by ${found.map(part => (100 * part).toFixed(2)).join(', ')} %`)
           expectTrue(found[5] < most, `six frames after a turn pictures are off by ${found[5]}`)
+          if (quality === 'high') {
+            const samples = await samplesAfterTurn(sky)
+            t.note(`${samples.toFixed(2)} samples after 12 frames of a turn`)
+            expectTrue(samples > 0.3, `a turn leaves ${samples} samples of a pixel`)
+          }
           sky.dispose()
         },
         narrow.size

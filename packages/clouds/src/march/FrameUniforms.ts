@@ -135,7 +135,8 @@ export class FrameUniforms {
   /** Marched pixels along an edge of those that share a ray through what falls, and the first that does so in this frame. */
   readonly fallBlock = number(1)
   readonly fallPixel = vector2()
-  /** Shift of the noise of steps, in [0, 1). */
+  /** Shift of a pixel's noise from one of its samples to the next, in [0, 1), and one that is another for each frame of a round. */
+  readonly roundShift = number()
   readonly noiseShift = number()
   readonly projectionInverse = matrix4()
   readonly near = number()
@@ -251,10 +252,11 @@ export class FrameUniforms {
     const index = pixelAt(block, this.#count)
     this.jitter.value.set(index % block, Math.floor(index / block))
     this.block.value = block
-    // Low-discrepancy in a pixel's samples, which are whole rounds apart, and over the pixels of a block.
+    // Low-discrepancy in a pixel's samples, which are whole rounds apart.
     const round = Math.floor(this.#count / frames)
-    const shift = round * GOLDEN_RATIO + index / frames
-    this.noiseShift.value = usesHistory ? shift % 1 : 0
+    const shift = usesHistory ? round * GOLDEN_RATIO : 0
+    this.roundShift.value = shift % 1
+    this.noiseShift.value = usesHistory ? (shift + index / frames) % 1 : 0
     const own = pixelAt(this.fallBlock.value, round)
     this.fallPixel.value.set(own & 1, own >> 1)
     this.#count++

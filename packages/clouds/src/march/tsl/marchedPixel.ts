@@ -1,5 +1,5 @@
 import { uv } from 'three/tsl'
-import { interleavedNoise } from '../../temporal/tsl/noisePattern'
+import { blueNoise } from '../../temporal/tsl/noisePattern'
 import type { Float, LevelTexture, Vec2 } from '../../tsl-types'
 import type { FrameInputs } from './viewRay'
 
@@ -17,5 +17,5 @@ export function marchedPixel({ frame }: FrameInputs): { block: Vec2; at: Vec2; n
   const block = uv().mul(frame.marchedSize).floor().toConst() as unknown as Vec2
   const pixel = block.mul(frame.block).add(frame.jitter).min(frame.size.sub(1))
   const at = pixel.add(0.5).div(frame.size).toConst() as Vec2
-  return { block, at, noise: interleavedNoise(block, frame.noiseShift) }
+  return { block, at, noise: blueNoise(pixel).add(frame.roundShift).fract().toConst() }
 }

@@ -35,14 +35,20 @@ const NO_SAMPLES = 2 ** 15
  */
 export function pack(distance: Float, end: Float, samples: Float): Vec4 {
   const bits = samples.mul(SAMPLE_STEPS).round().add(NO_SAMPLES).toConst() as Float
-  const high = bits.div(256).floor().toConst() as Float
-  const [first, second] = [distance, end].map(at => at.sub(FIRST_OCTAVE).div(OCTAVES))
-  return vec4(first, second, vec2(high, bits.sub(high.mul(256))).div(255))
+  const high = bits
+    .mul(1 / 256)
+    .floor()
+    .toConst() as Float
+  const octaves = vec2(distance, end)
+    .sub(FIRST_OCTAVE)
+    .mul(1 / OCTAVES)
+  return vec4(octaves, vec2(high, bits.sub(high.mul(256))).mul(1 / 255))
 }
 
 /** The inverse of {@link pack}: log₂ of both distances, and the sample count. */
 export function unpack(bytes: Vec4): Vec4 {
   const distances = bytes.xy.mul(OCTAVES).add(FIRST_OCTAVE)
-  const samples = bytes.zw.mul(255).round().dot(vec2(256, 1)).sub(NO_SAMPLES).div(SAMPLE_STEPS)
+  const bits = bytes.zw.mul(255).round().dot(vec2(256, 1))
+  const samples = bits.sub(NO_SAMPLES).mul(1 / SAMPLE_STEPS)
   return vec4(distances, samples, 0).toConst()
 }

@@ -13,11 +13,11 @@ import { sharpSample } from './sharpSample'
 const STILL_MOTION = 0.02
 
 /**
- * Motion after which history is no more than a stopgap [pixels], and what it is worth then [samples].
- * Greater: clouds blur while one turns (*Cockpit*).
+ * Motion above which history is read between pixels in each frame [pixels], and the most that it is worth then [samples]. More: clouds blur
+ * while one turns, and for a second after (*Cockpit*); less: grain.
  */
-const FAST_MOTION = 10
-const FAST_SAMPLES = 0.1
+const FAST_MOTION = 1
+const FAST_SAMPLES = 4
 
 /**
  * Error of the reprojection at which history is rejected: clouds at another distance than this pixel's [pixels].
@@ -34,7 +34,7 @@ export interface ReprojectedHistory {
   /** log₂ of the distance of its clouds, if it has any. */
   readonly distance: Float
   readonly hasClouds: Bool
-  /** Stationarity: 1 where neither clouds nor what was drawn have moved, falling to 0 at a pixel's motion. */
+  /** Stationarity: 1 where neither clouds nor what was drawn have moved but by a turn of the camera, falling to 0 at a pixel's motion. */
   readonly stationarity: Float
 }
 
@@ -46,6 +46,7 @@ export interface ReprojectedHistory {
  * @param end - log₂ of the distance at which the pixel ends.
  * @param distance - log₂ of the distance of its clouds.
  * @param origin - Element of `FrameUniforms.origins` of their layer.
+ * @param isSmooth - True where there is nothing that a bilinear look-up would blur.
  * @see Yang et al. 2020, "A survey of temporal antialiasing techniques", §3.2 (reprojection), §4.1 (rejection)
  */
 export function reprojectHistory(
@@ -55,15 +56,18 @@ export function reprojectHistory(
   { ndc, length }: PixelRay,
   end: Float,
   distance: Float,
-  origin: Vec3
+  origin: Vec3,
+  isSmooth: Bool
 ): ReprojectedHistory {
-  const raysBefore = frame.raysBefore as unknown as Mat3
-  const clipped = raysBefore
-    .mul(ndc)
-    .add(origin.mul(length.div(exp2(distance))))
-    .toConst() as Vec3
-  const uvBefore = clipped.xy.div(clipped.z.max(1e-9)).mul(vec2(0.5, -0.5)).add(0.5)
-  const motion = uvBefore.mul(frame.size).sub(0.5).sub(pixel).toConst() as Vec2
+  /** Clip space (x, y, w) of the last frame to its pixels. */
+  const pixelOf = ({ xy, z }: Vec3): Vec2 =>
+    xy.div(z.max(1e-9)).mul(vec2(0.5, -0.5)).add(0.5).mul(frame.size).sub(0.5).toConst()
+  const farBefore = (frame.raysBefore as unknown as Mat3).mul(ndc).toConst() as Vec3
+  const clipped = farBefore.add(origin.mul(length.div(exp2(distance)))).toConst() as Vec3
+  const before = pixelOf(clipped)
+  const motion = before.sub(pixel).toConst() as Vec2
+  // A turn moves all alike, whatever its distance.
+  const shift = before.sub(pixelOf(farBefore)).length().toConst() as Float
   const isStill = motion.x.abs().max(motion.y.abs()).lessThan(STILL_MOTION)
   const from = pixel
     .add(isStill.select(vec2(0), motion))
@@ -74,27 +78,24 @@ export function reprojectHistory(
   const apart = unpack(history.distances.sample(nearest).level(0))
   const clampedEnd = clampDistance(end).toConst() as Float
   const light = history.light.sample(from.div(frame.size)).level(0).toVar() as Vec4
-  If(isStill.not(), () => {
+  If(isStill.or(isSmooth).not(), () => {
     light.assign(sharpSample(history.light, from, frame.size))
     // Transmittance, which overshoots at edges.
     light.w.assign(light.w.min(1))
   })
-  // Parallax: clouds at the distance of history would have moved by this ratio of the motion more or less.
+  // Parallax: clouds at the distance of history would have moved by this ratio of the shift more or less.
   const ratio = exp2(distance.sub(apart.x)).sub(1).abs()
-  const speed = motion.length().toConst() as Float
-  const parallax = ratio.mul(speed).div(MAX_PARALLAX).oneMinus().clamp()
+  const parallax = ratio.mul(shift).div(MAX_PARALLAX).oneMinus().clamp()
   const validity = isInside.select(passesDepthTest(clampedEnd, apart), 0).mul(parallax)
   const { gainChange, maxSamples } = frame
+  const isFast = motion.length().greaterThan(FAST_MOTION)
+  const most = isFast.select(maxSamples.min(FAST_SAMPLES), maxSamples)
   const isSameEnd = clampedEnd.sub(apart.y).abs().lessThan(SAME_DISTANCE)
   return {
     distance: apart.x,
     hasClouds: apart.z.greaterThan(0),
     light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
-    stationarity: isSameEnd.select(speed.oneMinus().max(0), 0),
-    samples: apart.z
-      .abs()
-      .min(maxSamples.mul(speed.div(FAST_MOTION).oneMinus()).max(FAST_SAMPLES))
-      .mul(validity)
-      .toConst()
+    stationarity: isSameEnd.select(shift.oneMinus().max(0), 0),
+    samples: apart.z.abs().min(most).mul(validity).toConst()
   }
 }

@@ -26,6 +26,12 @@ const LEAST_SLACK = 0.01
 const YOUNG_SAMPLES = 1.5
 const OLD_SAMPLES = 4
 
+/**
+ * Standard deviation of a cell's brightness, in parts of it, and three times that of its transmittance, below which clouds have nothing that
+ * a bilinear look-up would blur [–]. Greater: faster (*Inside a cloud*), and thin clouds blur while they move.
+ */
+const SMOOTH = 0.01
+
 /** A pixel's result, and the accumulated samples behind it. */
 interface Accumulated {
   readonly light: Vec4
@@ -109,7 +115,10 @@ export function upscale(
       const distance = now.distance.toVar()
       If(frame.hasHistory.greaterThan(0), () => {
         const origin = frame.originArray.element(cell.distances.w.toInt()).xyz
-        const last = reprojectHistory(viewRays, history, pixel, ray, end, now.distance, origin)
+        const { x: brightness, z, w } = cellLight
+        const isSmooth = z.max(w.mul(3).mul(brightness)).lessThan(brightness.mul(SMOOTH))
+        const { distance: seen } = now
+        const last = reprojectHistory(viewRays, history, pixel, ray, end, seen, origin, isSmooth)
         accumulate({ light: result, samples, distance }, viewRays, now, last)
       })
       const signed = result.w.greaterThan(CLEAR).select(samples.negate(), samples)
