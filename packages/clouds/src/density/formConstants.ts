@@ -65,7 +65,7 @@ export const heightForm = {
   inversion: 0.72,
   inversionStrength: 17,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
-  grown: 0.73,
+  grown: 0.69,
   /**
    * Strength that towers need below an anvil, on top of the anvil's own [–], and heights between which they spread,
    * in [0, 1]. Smaller: a storm as wide as its anvil from the base on (*Storm*).
@@ -127,12 +127,6 @@ export const densityForm = {
   softEdge: 12,
   /** Softer edges at the base than at the top: factor of their width less 1 [–]. 0: bases like tops (*Cumulus*). */
   softerBase: 9.2,
-  /**
-   * Density of cloud just inside its edges, and strength by which it is full [–]: mixed air. Smaller density, or greater strength:
-   * dull, see-through heads (*Cumulus*).
-   */
-  edgeDensity: 0.97,
-  core: 0.66,
   /**
    * Factor of the density of what only billows make cloud, and the strength of columns without them over which
    * it rises to 1 [–], less a share of what the height needs: decaying bits are thin. Factor 1: confetti about

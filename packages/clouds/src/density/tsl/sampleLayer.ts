@@ -47,8 +47,7 @@ interface Body {
   readonly sample: CloudSample
   readonly height: Float
   readonly weather: CloudWeather
-  /** Strength with coarse billows, and with fine ones, too. */
-  readonly body: Float
+  /** Strength with all billows. */
   readonly strength: Float
   /** Strength of detail, per deviation of its noise [–]. */
   readonly detailStrength: Float
@@ -79,14 +78,13 @@ function bodyAt(
     resolution,
     nearby
   )
-  const [body, strength, detailStrength] = [0, 1, 2].map(() => float(0).toVar() as Float)
+  const [strength, detailStrength] = [0, 1].map(() => float(0).toVar() as Float)
   const edge = edgeAt(layer, height).toVar() as Float
   const crumbs = float(1).toVar() as Float
   ifStorm(
     layer,
     () => {
       const storm = stormStrength(field, layer, weather, shape, height, shapeLevel)
-      body.assign(storm.body)
       strength.assign(storm.strength)
       detailStrength.assign(storm.detail)
       edge.assign(storm.edge)
@@ -97,7 +95,10 @@ function bodyAt(
       const column = columnStrength(layer, weather, background.coverage, resolution)
       const rough = topBillows(column)
       const needed = neededStrength(layer, height).toConst() as Float
-      body.assign(column.sub(needed).add(shape.coarse.mul(amount.coarse).mul(rough)))
+      const body = column
+        .sub(needed)
+        .add(shape.coarse.mul(amount.coarse).mul(rough))
+        .toConst() as Float
       const share = fineShare(body)
       const fine = shape.fine.mul(amount.fine).mul(rough)
       strength.assign(body.add(fine.mul(share)))
@@ -105,7 +106,7 @@ function bodyAt(
       crumbs.assign(crumbDensity(column, needed))
     }
   )
-  return { sample, height, weather, body, strength, detailStrength, edge, crumbs }
+  return { sample, height, weather, strength, detailStrength, edge, crumbs }
 }
 
 /**
@@ -158,11 +159,11 @@ export function sampleLayerAt(
       }
     )
   }
-  bodies.forEach(({ height, body, edge, crumbs }, i) => {
+  bodies.forEach(({ height, edge, crumbs }, i) => {
     const { density, strength } = found[i]
     If(strength.greaterThan(0), () => {
       const full = densityAtHeight(layer, height).mul(crumbs)
-      density.assign(densityOf(strength, body, edge).mul(full))
+      density.assign(densityOf(strength, edge).mul(full))
     })
   })
   If(unresolvedFraction.greaterThan(0), () => {
