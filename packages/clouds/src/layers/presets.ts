@@ -14,11 +14,13 @@ const altocumulus: Partial<CloudLayerParameters> = {
   baseAltitude: 3600,
   topAltitude: 4000,
   coverage: 0.5,
-  density: 0.02,
+  density: 0.03,
   profileExponent: 1.5,
-  edgeSoftness: 0.5,
-  weatherScale: 0.25,
-  shapeScale: 0.5,
+  shapeAmount: 0.6,
+  edgeSoftness: 0.35,
+  weatherScale: 0.35,
+  shapeScale: 0.7,
+  turbulence: 0.4,
   densityGrowth: 0.2,
   weatherWeights: [0, 1, 0, 0],
   wind: { east: 16, north: -3 }
@@ -58,14 +60,15 @@ const smallCumulus: Partial<CloudLayerParameters> = {
   coverage: 0.25
 }
 
+/** Tops at all heights: thick and thin places, which are dark and bright from below. */
 const overcast: Partial<CloudLayerParameters> = {
   baseAltitude: 600,
   topAltitude: 1500,
   coverage: 1,
-  density: 0.02,
-  profileExponent: 0.7,
-  shapeAmount: 0.7,
+  density: 0.045,
+  profileExponent: 0.27,
   edgeSoftness: 0.4,
+  weatherScale: 0.6,
   weatherWeights: [0, 1, 0, 0],
   wind: { east: 10, north: 5 }
 }
@@ -75,7 +78,10 @@ const fog: Partial<CloudLayerParameters> = {
   ...overcast,
   baseAltitude: 0,
   topAltitude: 400,
-  profileExponent: 4
+  density: 0.02,
+  profileExponent: 4,
+  shapeAmount: 0.7,
+  weatherScale: 1
 }
 
 const cirrus: Partial<CloudLayerParameters> = {
@@ -146,13 +152,23 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     },
     cumulus
   ],
-  nimbostratus: [{ ...overcast, topAltitude: 3500, precipitation: { rate: 3, share: 0.9 } }],
+  nimbostratus: [
+    {
+      ...overcast,
+      topAltitude: 3500,
+      density: 0.02,
+      profileExponent: 0.35,
+      weatherScale: 0.5,
+      precipitation: { rate: 3, share: 0.6, streaks: 1.6 }
+    }
+  ],
   snowShower: [
     {
       ...congestus,
       weatherScale: 0.6,
       shapeScale: 0.6,
       shapeAmount: 1,
+      turbulence: 1,
       precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 }
     }
   ],

@@ -140,6 +140,16 @@ describe('functions of the height', () => {
     }
   })
 
+  it('leave thin places in decks that are closed, which are bright from below', () => {
+    const { offset, coverageOffset, fullCoverageExcess } = strengthForm
+    for (const name of ['overcast', 'nimbostratus'] as const) {
+      const { parameters } = cloudPreset(name).at(0)
+      const weakest = parameters.shapeAmount * (offset + coverageOffset) + fullCoverageExcess
+      expect(neededStrength(parameters, 0.1)).toBeLessThan(weakest)
+      expect(neededStrength(parameters, 0.4)).toBeGreaterThan(weakest)
+    }
+  })
+
   it('let towers spread into an anvil, below what overshoots', () => {
     const storm = parametersOf({ anvil: 1 })
     const [tower, anvil, top] = [0.25, 0.7, 1].map(height => neededStrength(storm, height))

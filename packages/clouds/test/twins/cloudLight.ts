@@ -220,6 +220,6 @@ export function litGround(
 ): number {
   const cosine = Math.max(Math.abs(cosLight), 0.12)
   const passed = eddingtonDiffuse(depthThrough * cosine, 1 - scalePhase(phase).moments[1])
-  const disc = Math.sin(Math.atan2(radius, Math.max(altitude, 0) / cosine)) ** 2
+  const disc = Math.sin(Math.atan2(radius, altitude / cosine)) ** 2
   return 1 - (layered + (1 - layered) * disc) * (1 - passed)
 }

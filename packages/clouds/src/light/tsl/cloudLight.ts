@@ -105,7 +105,7 @@ export function litGround(
 ): Float {
   const cosine = cosLight.abs().max(LOWEST_COSINE).toConst() as Float
   const slab = light.oneMinusAsymmetry.mul(0.75).mul(depthThrough).mul(cosine).toConst()
-  const distance = altitude.max(0).div(cosine.mul(radius)).toConst()
+  const distance = altitude.div(cosine.mul(radius)).toConst()
   const shaded = mix(distance.mul(distance).add(1).reciprocal(), 1, layered)
   return slab.div(slab.add(1)).mul(shaded).oneMinus()
 }

@@ -84,11 +84,7 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     cosView,
     resolved
   })
-  const below = litGround(light, {
-    ...lit,
-    radius: cloudWidth.div(2),
-    altitude: sample.altitude
-  })
+  const below = litGround(light, { ...lit, ...sample, radius: cloudWidth.div(2) })
   return {
     direct: direct.mul(cast),
     sky: ambient.sky,

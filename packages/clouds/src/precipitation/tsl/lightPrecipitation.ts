@@ -99,8 +99,9 @@ export function lightPrecipitation(
   const fall = baseAltitude.sub(sample.altitude).max(0).div(radius).toConst()
   const hidden = mix(fall.mul(fall).add(1).reciprocal(), 1, layered)
   const sky = mix(0.5, under.sky, hidden)
-  const below = litGround(light, { ...nodes, radius, altitude: sample.altitude })
-  const ground = mix(0.5, under.ground, hidden).mul(below)
+  const ground = mix(0.5, under.ground, hidden).mul(
+    litGround(light, { ...nodes, ...sample, radius })
+  )
   const shares = vec3(often.max(0).mul(cast), sky, ground).mul(weight).toConst() as Vec3
   return shade(field, sample, shares, once.mul(cast))
 }
