@@ -132,7 +132,7 @@ export const densityForm = {
    * it rises to 1 [–], less a share of what the height needs: decaying bits are thin. Factor 1: confetti about
    * clouds; greater share: thin tops (*Cumulus*).
    */
-  crumb: 0.2,
+  crumb: 0.21,
   crumbFrom: [-1.05, -0.25],
   crumbHeight: 0.4
 } as const

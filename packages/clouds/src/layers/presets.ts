@@ -21,7 +21,6 @@ const altocumulus: Partial<CloudLayerParameters> = {
   weatherScale: 0.35,
   shapeScale: 0.7,
   turbulence: 0.4,
-  densityGrowth: 0.2,
   weatherWeights: [0, 1, 0, 0],
   wind: { east: 16, north: -3 }
 }
@@ -80,8 +79,7 @@ const fog: Partial<CloudLayerParameters> = {
   topAltitude: 400,
   density: 0.02,
   profileExponent: 4,
-  shapeAmount: 0.7,
-  weatherScale: 1
+  shapeAmount: 0.7
 }
 
 const cirrus: Partial<CloudLayerParameters> = {
@@ -158,7 +156,6 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       topAltitude: 3500,
       density: 0.02,
       profileExponent: 0.35,
-      weatherScale: 0.5,
       precipitation: { rate: 3, share: 0.6, streaks: 1.6 }
     }
   ],
