@@ -65,7 +65,7 @@ export const heightForm = {
   inversion: 0.72,
   inversionStrength: 17,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
-  grown: 0.73,
+  grown: 0.65,
   /**
    * Strength that towers need below an anvil, on top of the anvil's own [–], and heights between which they spread,
    * in [0, 1]. Smaller: a storm as wide as its anvil from the base on (*Storm*).
@@ -132,7 +132,7 @@ export const densityForm = {
    * it rises to 1 [–], less a share of what the height needs: decaying bits are thin. Factor 1: confetti about
    * clouds; greater share: thin tops (*Cumulus*).
    */
-  crumb: 0.21,
+  crumb: 0.2,
   crumbFrom: [-1.05, -0.25],
   crumbHeight: 0.4
 } as const

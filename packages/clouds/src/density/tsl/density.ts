@@ -19,7 +19,7 @@ export const edgeAt = (layer: LayerNodes, height: Float): Float => {
  * @param strength - With all billows and detail: cloud is where it is above 0.
  * @param edge - `edgeAt`.
  */
-export const densityOf = (strength: Float, edge: Float): Float => strength.div(edge).clamp(0, 1)
+export const densityOf = (strength: Float, edge: Float): Float => strength.div(edge).clamp()
 
 /**
  * Factor of the density at a place: bits of cloud that only billows make are mixed with clear air.

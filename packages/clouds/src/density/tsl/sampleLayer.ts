@@ -66,7 +66,7 @@ function bodyAt(
   resolution: Resolution,
   nearby?: StormNearby
 ): Body {
-  const height = heightIn(layer, sample.altitude).clamp(0, 1).toConst() as Float
+  const height = heightIn(layer, sample.altitude).clamp().toConst() as Float
   const { shapeLevel } = resolution
   const shape = billows(field, layer, sample.offset, background.shift, shapeLevel)
   const weather = cloudWeather(
@@ -173,7 +173,7 @@ export function sampleLayerAt(
       .div(bodies.length)
       .toConst()
     If(covered.greaterThan(0), () => {
-      const height = heightIn(layer, middle.altitude).clamp(0, 1).toConst() as Float
+      const height = heightIn(layer, middle.altitude).clamp().toConst() as Float
       const cosine = direction?.dot(middle.up).toConst() as Float | undefined
       const mean = unresolvedDensity(field, layer, covered, height, unresolved, cosine)
       for (const { density, strength } of found) {

@@ -70,7 +70,7 @@ export function stormStrength(
   const stormDistance = frayedDistance(field, layer, weather, ice, height, level)
   const smooth = smoothStormStrength(layer, { ...weather, stormDistance }, height)
   // Bulges of the surface, not clouds beside it.
-  const near = smooth.div(reach).add(1).clamp(0, 1)
+  const near = smooth.div(reach).add(1).clamp()
   const bulges = near.mul(billows.coarse).mul(coarse).add(billows.fine.mul(fine))
   return {
     strength: smooth.add(amount.mul(bulges)).toConst(),
