@@ -65,7 +65,7 @@ export const heightForm = {
   inversion: 0.72,
   inversionStrength: 17,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
-  grown: 0.65,
+  grown: 0.73,
   /**
    * Strength that towers need below an anvil, on top of the anvil's own [–], and heights between which they spread,
    * in [0, 1]. Smaller: a storm as wide as its anvil from the base on (*Storm*).

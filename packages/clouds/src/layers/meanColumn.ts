@@ -34,7 +34,7 @@ export function neededStrength(
   const { top, inversion, inversionStrength } = heightForm
   const { tower, towerHeights, anvil: needed, anvilHeights, overshoot } = heightForm
   const column =
-    top * Math.max(height, 1e-8) ** profileExponent +
+    top * Math.max(height, 1e-4) ** profileExponent +
     inversionStrength * Math.max(height - inversion, 0) ** 2
   const end = Math.max(height - anvilHeights[0], 0) / (1 - anvilHeights[0])
   const spread =

@@ -59,27 +59,25 @@ const smallCumulus: Partial<CloudLayerParameters> = {
   coverage: 0.25
 }
 
-/** Tops at all heights: thick and thin places, which are dark and bright from below. */
-const overcast: Partial<CloudLayerParameters> = {
+/** A closed deck. */
+const deck: Partial<CloudLayerParameters> = {
   baseAltitude: 600,
   topAltitude: 1500,
   coverage: 1,
-  density: 0.045,
-  profileExponent: 0.27,
+  density: 0.02,
+  profileExponent: 0.7,
+  shapeAmount: 0.7,
   edgeSoftness: 0.4,
-  weatherScale: 0.6,
   weatherWeights: [0, 1, 0, 0],
   wind: { east: 10, north: 5 }
 }
 
 /** Fog from sea level up, through which one sees 150 m. */
 const fog: Partial<CloudLayerParameters> = {
-  ...overcast,
+  ...deck,
   baseAltitude: 0,
   topAltitude: 400,
-  density: 0.02,
-  profileExponent: 4,
-  shapeAmount: 0.7
+  profileExponent: 4
 }
 
 const cirrus: Partial<CloudLayerParameters> = {
@@ -130,7 +128,10 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       wind: { east: 9, north: 4 }
     }
   ],
-  overcast: [overcast],
+  // Tops at all heights: thin places are bright from below.
+  overcast: [
+    { ...deck, density: 0.045, profileExponent: 0.4, shapeAmount: 0.8, weatherScale: 0.6 }
+  ],
   cumulonimbus: [{ ...storm, precipitation: { rate: 0, ...hail } }, smallCumulus],
   altocumulus: [altocumulus],
   cirrus: [cirrus],
@@ -151,19 +152,14 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     cumulus
   ],
   nimbostratus: [
-    {
-      ...overcast,
-      topAltitude: 3500,
-      density: 0.02,
-      profileExponent: 0.35,
-      precipitation: { rate: 3, share: 0.6, streaks: 1.6 }
-    }
+    { ...deck, topAltitude: 3500, precipitation: { rate: 3, share: 0.6, streaks: 1.6 } }
   ],
   snowShower: [
     {
       ...congestus,
+      profileExponent: 0.7,
       weatherScale: 0.6,
-      shapeScale: 0.6,
+      shapeScale: 0.5,
       shapeAmount: 1,
       turbulence: 1,
       precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 }

@@ -140,14 +140,12 @@ describe('functions of the height', () => {
     }
   })
 
-  it('leave thin places in decks that are closed, which are bright from below', () => {
+  it('leave thin places in an overcast, which are bright from below, but no holes', () => {
     const { offset, coverageOffset, fullCoverageExcess } = strengthForm
-    for (const name of ['overcast', 'nimbostratus'] as const) {
-      const { parameters } = cloudPreset(name).at(0)
-      const weakest = parameters.shapeAmount * (offset + coverageOffset) + fullCoverageExcess
-      expect(neededStrength(parameters, 0.1)).toBeLessThan(weakest)
-      expect(neededStrength(parameters, 0.4)).toBeGreaterThan(weakest)
-    }
+    const { parameters } = cloudPreset('overcast').at(0)
+    const weakest = parameters.shapeAmount * (offset + coverageOffset) + fullCoverageExcess
+    expect(neededStrength(parameters, 0.05)).toBeLessThan(weakest / 2)
+    expect(neededStrength(parameters, 0.4)).toBeGreaterThan(weakest)
   })
 
   it('let towers spread into an anvil, below what overshoots', () => {

@@ -17,7 +17,7 @@ import type { LayerNodes } from './layer'
 export function neededStrength(layer: LayerNodes, height: Float): Float {
   const above = height.sub(heightForm.inversion).max(0).toConst()
   const column = height
-    .max(1e-8)
+    .max(1e-4)
     .pow(layer.profileExponent)
     .mul(heightForm.top)
     .add(above.mul(above).mul(heightForm.inversionStrength))
