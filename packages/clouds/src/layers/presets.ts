@@ -121,17 +121,14 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       baseAltitude: 800,
       topAltitude: 1300,
       coverage: 0.8,
-      density: 0.08,
+      density: 0.07,
       profileExponent: 1.5,
       edgeSoftness: 0.25,
       weatherWeights: [0, 1, 0, 0],
       wind: { east: 9, north: 4 }
     }
   ],
-  // Tops at all heights: thin places are bright from below.
-  overcast: [
-    { ...deck, density: 0.045, profileExponent: 0.4, shapeAmount: 0.8, weatherScale: 0.6 }
-  ],
+  overcast: [{ ...deck, weatherScale: 0.6 }],
   cumulonimbus: [{ ...storm, precipitation: { rate: 0, ...hail } }, smallCumulus],
   altocumulus: [altocumulus],
   cirrus: [cirrus],

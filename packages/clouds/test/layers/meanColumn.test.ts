@@ -140,14 +140,6 @@ describe('functions of the height', () => {
     }
   })
 
-  it('leave thin places in an overcast, which are bright from below, but no holes', () => {
-    const { offset, coverageOffset, fullCoverageExcess } = strengthForm
-    const { parameters } = cloudPreset('overcast').at(0)
-    const weakest = parameters.shapeAmount * (offset + coverageOffset) + fullCoverageExcess
-    expect(neededStrength(parameters, 0.05)).toBeLessThan(weakest / 2)
-    expect(neededStrength(parameters, 0.4)).toBeGreaterThan(weakest)
-  })
-
   it('let towers spread into an anvil, below what overshoots', () => {
     const storm = parametersOf({ anvil: 1 })
     const [tower, anvil, top] = [0.25, 0.7, 1].map(height => neededStrength(storm, height))
