@@ -44,7 +44,6 @@ export interface SampleOptions {
 
 /** A layer at a place, before detail. */
 interface Body {
-  readonly sample: CloudSample
   readonly height: Float
   readonly weather: CloudWeather
   /** Strength with all billows. */
@@ -106,7 +105,7 @@ function bodyAt(
       crumbs.assign(crumbDensity(column, needed))
     }
   )
-  return { sample, height, weather, strength, detailStrength, edge, crumbs }
+  return { height, weather, strength, detailStrength, edge, crumbs }
 }
 
 /**

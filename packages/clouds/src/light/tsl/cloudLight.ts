@@ -104,7 +104,7 @@ export function litGround(
   { depthThrough, layered, radius, altitude, cosLight }: GroundShadeNodes
 ): Float {
   const cosine = cosLight.abs().max(LOWEST_COSINE).toConst() as Float
-  const slab = light.oneMinusAsymmetry.mul(0.75).mul(depthThrough).mul(cosine).toConst()
+  const slab = light.oneMinusAsymmetry.mul(0.75).mul(depthThrough).mul(cosine)
   const distance = altitude.div(cosine.mul(radius)).toConst()
   const shaded = mix(distance.mul(distance).add(1).reciprocal(), 1, layered)
   return slab.div(slab.add(1)).mul(shaded).oneMinus()
