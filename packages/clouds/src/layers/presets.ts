@@ -17,7 +17,7 @@ const altocumulus: Partial<CloudLayerParameters> = {
   density: 0.03,
   profileExponent: 1.5,
   shapeAmount: 0.6,
-  edgeSoftness: 0.35,
+  edgeSoftness: 0.4,
   weatherScale: 0.35,
   shapeScale: 0.7,
   turbulence: 0.4,
@@ -149,7 +149,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     cumulus
   ],
   nimbostratus: [
-    { ...deck, topAltitude: 3500, precipitation: { rate: 3, share: 0.6, streaks: 1.6 } }
+    { ...deck, topAltitude: 3500, precipitation: { rate: 3, share: 0.6, streaks: 1.8 } }
   ],
   snowShower: [
     {
