@@ -107,8 +107,8 @@ const fromTheGround: Still[] = Object.entries(presets).flatMap(
       sun: { elevation, azimuth: (view.azimuth + turn + 360) % 360 },
       view,
       place,
-      // A low sun's light comes through much air, and not where clouds stand before it.
-      shafts: elevation < 10 ? (true as const) : undefined,
+      // Light of a low sun, or of one ahead, comes through much air, and not where clouds stand before it.
+      shafts: elevation < 30 ? (true as const) : undefined,
       land: 'hills' as const
     }))
 )

@@ -66,7 +66,7 @@ for (const [where, place] of places) {
     `puts clouds where float64 does ${where}`,
     async t => {
       const layers = cloudPreset('mixed')
-      for (const layer of layers) layer.set({ coverage: 0.8 })
+      for (const layer of layers) layer.set({ coverage: 0.85 })
       const scene = await cloudScene(t, layers, place)
       scene.update(7200)
       let cloudy = 0

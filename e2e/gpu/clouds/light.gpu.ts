@@ -22,7 +22,11 @@ import {
   scalePhase,
   type CloudPhaseParameters
 } from '../../../packages/clouds/src/light/cpu/cloudPhase'
-import { cloudAmbientShares, cloudSource } from '../../../packages/clouds/src/light/tsl/cloudLight'
+import {
+  cloudAmbientShares,
+  cloudSource,
+  litGround
+} from '../../../packages/clouds/src/light/tsl/cloudLight'
 import { singlePhase } from '../../../packages/clouds/src/light/tsl/cloudPhase'
 import { inFog, middle } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
@@ -167,12 +171,16 @@ gpuTest('scatters light of sky and ground like its float64 twin', async t => {
     const { x: depthAbove, y: depthBelow, z: cosView, w: layered } = input
     const sample = { depthAbove, depthBelow, cosView, layered }
     const { sky, ground } = cloudAmbientShares(light.nodes, sample)
-    return vec4(sky, ground, 0, 0)
+    const [radius, altitude] = [float(1500), depthAbove.mul(200)]
+    const cloud = { depthThrough: depthBelow, layered, radius, altitude, cosLight: cosView }
+    return vec4(sky, ground, litGround(light.nodes, cloud), 0)
   })
   const expected = inputs.flatMap(([depthAbove, depthBelow, cosView, layered]) => {
     const sample = { depthAbove, depthBelow, cosView, layered }
     const { sky, ground } = twin.cloudAmbient(table, sample)
-    return [sky, ground, 0, 0]
+    const [radius, altitude] = [1500, 200 * depthAbove]
+    const cloud = { depthThrough: depthBelow, layered, radius, altitude, cosLight: cosView }
+    return [sky, ground, twin.litGround(light.phase, cloud), 0]
   })
   expectClose(Array.from(results), expected, { absolute: 3e-3 })
   light.dispose()

@@ -128,12 +128,6 @@ export const densityForm = {
   /** Softer edges at the base than at the top: factor of their width less 1 [–]. 0: bases like tops (*Cumulus*). */
   softerBase: 9.2,
   /**
-   * Density of cloud just inside its edges, and strength by which it is full [–]: mixed air. Smaller density, or greater strength:
-   * dull, see-through heads (*Cumulus*).
-   */
-  edgeDensity: 0.97,
-  core: 0.66,
-  /**
    * Factor of the density of what only billows make cloud, and the strength of columns without them over which
    * it rises to 1 [–], less a share of what the height needs: decaying bits are thin. Factor 1: confetti about
    * clouds; greater share: thin tops (*Cumulus*).

@@ -114,11 +114,8 @@ export const edgeAt = (layer: CloudLayerParameters, height: number): number =>
   layerForms(layer).edge * (1 + densityForm.softerBase * (1 - height) ** 2)
 
 /** Density of a strength over the layer's at that height: `densityOf` of density/tsl/density.ts. */
-export function densityOf(edge: number, strength: number, body: number): number {
-  const { edgeDensity, core } = densityForm
-  const inside = Math.sqrt(MathUtils.clamp(body / core, 0, 1))
-  return MathUtils.clamp(strength / edge, 0, 1) * (edgeDensity + (1 - edgeDensity) * inside)
-}
+export const densityOf = (edge: number, strength: number): number =>
+  MathUtils.clamp(strength / edge, 0, 1)
 
 /** Factor of the billows of a column of a strength: `topBillows` of density/tsl/billows.ts. */
 export const topBillows = (column: number): number =>
@@ -221,7 +218,7 @@ function columnAt(
       const { column, needed, rough, edge, crumbs } = strengths(i, height)
       const here = BILLOWS.reduce((part, [deviation, weight]) => {
         const strength = column - needed + rough * deviation
-        return part + weight * densityOf(edge, strength, strength) * crumbs
+        return part + weight * densityOf(edge, strength) * crumbs
       }, 0)
       return here * densityAtHeight(layer, height)
     })

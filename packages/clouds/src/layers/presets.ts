@@ -14,12 +14,13 @@ const altocumulus: Partial<CloudLayerParameters> = {
   baseAltitude: 3600,
   topAltitude: 4000,
   coverage: 0.5,
-  density: 0.02,
+  density: 0.03,
   profileExponent: 1.5,
-  edgeSoftness: 0.5,
-  weatherScale: 0.25,
-  shapeScale: 0.5,
-  densityGrowth: 0.2,
+  shapeAmount: 0.6,
+  edgeSoftness: 0.4,
+  weatherScale: 0.35,
+  shapeScale: 0.7,
+  turbulence: 0.4,
   weatherWeights: [0, 1, 0, 0],
   wind: { east: 16, north: -3 }
 }
@@ -58,7 +59,8 @@ const smallCumulus: Partial<CloudLayerParameters> = {
   coverage: 0.25
 }
 
-const overcast: Partial<CloudLayerParameters> = {
+/** A closed deck. */
+const deck: Partial<CloudLayerParameters> = {
   baseAltitude: 600,
   topAltitude: 1500,
   coverage: 1,
@@ -72,7 +74,7 @@ const overcast: Partial<CloudLayerParameters> = {
 
 /** Fog from sea level up, through which one sees 150 m. */
 const fog: Partial<CloudLayerParameters> = {
-  ...overcast,
+  ...deck,
   baseAltitude: 0,
   topAltitude: 400,
   profileExponent: 4
@@ -119,14 +121,14 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       baseAltitude: 800,
       topAltitude: 1300,
       coverage: 0.8,
-      density: 0.08,
+      density: 0.07,
       profileExponent: 1.5,
       edgeSoftness: 0.25,
       weatherWeights: [0, 1, 0, 0],
       wind: { east: 9, north: 4 }
     }
   ],
-  overcast: [overcast],
+  overcast: [{ ...deck, weatherScale: 0.6 }],
   cumulonimbus: [{ ...storm, precipitation: { rate: 0, ...hail } }, smallCumulus],
   altocumulus: [altocumulus],
   cirrus: [cirrus],
@@ -146,13 +148,17 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
     },
     cumulus
   ],
-  nimbostratus: [{ ...overcast, topAltitude: 3500, precipitation: { rate: 3, share: 0.9 } }],
+  nimbostratus: [
+    { ...deck, topAltitude: 3500, precipitation: { rate: 3, share: 0.6, streaks: 1.8 } }
+  ],
   snowShower: [
     {
       ...congestus,
+      profileExponent: 0.7,
       weatherScale: 0.6,
-      shapeScale: 0.6,
+      shapeScale: 0.5,
       shapeAmount: 1,
+      turbulence: 1,
       precipitation: { rate: 1.5, share: 0.6, freezingLevel: 0 }
     }
   ],

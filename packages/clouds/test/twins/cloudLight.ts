@@ -1,3 +1,4 @@
+import { eddingtonDiffuse } from '../../src/environment/cpu/decks'
 import { scalePhase, type CloudPhaseParameters } from '../../src/light/cpu/cloudPhase'
 import { facingFit } from '../../src/light/cpu/facing'
 import { flowFit } from '../../src/light/cpu/flow'
@@ -201,4 +202,24 @@ export function cloudAmbient(
   const both = slab.sky + slab.ground
   const sky = layered * slab.sky + (1 - layered) * both * isolated
   return { sky, ground: both - sky }
+}
+
+/** Ground below a cloud: `GroundShadeNodes`. Lengths [m]. */
+export interface GroundShade {
+  depthThrough: number
+  layered: number
+  radius: number
+  altitude: number
+  cosLight: number
+}
+
+/** Part of the ground's light that is left below a cloud: `litGround` of light/tsl/cloudLight.ts, by the angle that the disc in shade fills. */
+export function litGround(
+  phase: CloudPhaseParameters,
+  { depthThrough, layered, radius, altitude, cosLight }: GroundShade
+): number {
+  const cosine = Math.max(Math.abs(cosLight), 0.12)
+  const passed = eddingtonDiffuse(depthThrough * cosine, 1 - scalePhase(phase).moments[1])
+  const disc = Math.sin(Math.atan2(radius, altitude / cosine)) ** 2
+  return 1 - (layered + (1 - layered) * disc) * (1 - passed)
 }

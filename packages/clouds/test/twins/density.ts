@@ -380,7 +380,6 @@ export function sampleLayer(
   const parts = storm
     ? stormStrength(layer, storm, coarse, fine, height)
     : {
-        body: inColumn,
         strength: inColumn + ofFine * share * fine * rough,
         detail: ofDetail,
         edge: edgeAt(layer, height),
@@ -393,7 +392,7 @@ export function sampleLayer(
   }
 
   const atHeight = densityAtHeight(layer, height)
-  const near = atHeight * densityOf(parts.edge, strength, parts.body) * parts.crumbs
+  const near = atHeight * densityOf(parts.edge, strength) * parts.crumbs
   const { unresolvedFraction, filteredCoverage } = weather
   if (unresolvedFraction === 0 || filteredCoverage === 0) {
     return { extinction: density * near, strength }

@@ -151,7 +151,6 @@ export function stormStrength(
   fine: number,
   height: number
 ): {
-  body: number
   strength: number
   detail: number
   edge: number
@@ -162,7 +161,6 @@ export function stormStrength(
   const smooth = smoothStormStrength(layer, distance, radius, height, towerDistance)
   const body = smooth + amount * stormNearness(smooth) * stormBillows.coarse * coarse
   return {
-    body,
     strength: body + amount * stormBillows.fine * fine,
     detail: amount * layer.detailAmount * stormBillows.detail,
     edge: stormEdge(layer, ice),

@@ -101,4 +101,4 @@ export const topBillows = (column: Float): Float =>
 
 /** Share of fine billows and detail that a body has, in [0, 1]: dense bodies have them, crumbs do not. */
 export const fineShare = (strength: Float): Float =>
-  strength.sub(billowForm.fineFrom).div(billowForm.fineOver).add(1).clamp(0, 1).toConst()
+  strength.sub(billowForm.fineFrom).div(billowForm.fineOver).add(1).clamp().toConst()

@@ -79,13 +79,13 @@ export function mappedCoverage(
           .select(index.equal(0).select(first, second), index.equal(2).select(third, fourth))
       : first
   )
-    .clamp(0, 1)
+    .clamp()
     .toConst() as Float
   // Odds multiply: 0 and 1 stay, and a coverage of ½ leaves the map as it is.
   const covered = share.mul(coverage).toConst() as Float
   const clear = share.oneMinus().mul(coverage.oneMinus())
   const mapped = covered.div(covered.add(clear).max(1e-6)).toConst() as Float
   if (!map.isPlaced) return mapped
-  const within = uv.min(uv.oneMinus()).div(EDGE).clamp(0, 1).toConst() as Vec2
+  const within = uv.min(uv.oneMinus()).div(EDGE).clamp().toConst() as Vec2
   return mix(coverage, mapped, within.x.mul(within.y)).toConst()
 }

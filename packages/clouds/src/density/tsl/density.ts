@@ -14,17 +14,12 @@ export const edgeAt = (layer: LayerNodes, height: Float): Float => {
 }
 
 /**
- * Density over a layer's at its height, in [0, 1]: it rises from 0 at the edge, and is full in the core.
+ * Density over a layer's at its height, in [0, 1]: it rises from 0 at the edge, and is full inside.
  *
  * @param strength - With all billows and detail: cloud is where it is above 0.
- * @param body - With coarse billows alone: it says how deep inside a place is.
  * @param edge - `edgeAt`.
  */
-export const densityOf = (strength: Float, body: Float, edge: Float): Float => {
-  const { edgeDensity, core } = densityForm
-  const inside = body.div(core).clamp(0, 1).sqrt()
-  return strength.div(edge).clamp(0, 1).mul(inside.mix(edgeDensity, 1)).toConst()
-}
+export const densityOf = (strength: Float, edge: Float): Float => strength.div(edge).clamp()
 
 /**
  * Factor of the density at a place: bits of cloud that only billows make are mixed with clear air.

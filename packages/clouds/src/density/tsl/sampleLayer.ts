@@ -44,11 +44,9 @@ export interface SampleOptions {
 
 /** A layer at a place, before detail. */
 interface Body {
-  readonly sample: CloudSample
   readonly height: Float
   readonly weather: CloudWeather
-  /** Strength with coarse billows, and with fine ones, too. */
-  readonly body: Float
+  /** Strength with all billows. */
   readonly strength: Float
   /** Strength of detail, per deviation of its noise [–]. */
   readonly detailStrength: Float
@@ -67,7 +65,7 @@ function bodyAt(
   resolution: Resolution,
   nearby?: StormNearby
 ): Body {
-  const height = heightIn(layer, sample.altitude).clamp(0, 1).toConst() as Float
+  const height = heightIn(layer, sample.altitude).clamp().toConst() as Float
   const { shapeLevel } = resolution
   const shape = billows(field, layer, sample.offset, background.shift, shapeLevel)
   const weather = cloudWeather(
@@ -79,14 +77,13 @@ function bodyAt(
     resolution,
     nearby
   )
-  const [body, strength, detailStrength] = [0, 1, 2].map(() => float(0).toVar() as Float)
+  const [strength, detailStrength] = [0, 1].map(() => float(0).toVar() as Float)
   const edge = edgeAt(layer, height).toVar() as Float
   const crumbs = float(1).toVar() as Float
   ifStorm(
     layer,
     () => {
       const storm = stormStrength(field, layer, weather, shape, height, shapeLevel)
-      body.assign(storm.body)
       strength.assign(storm.strength)
       detailStrength.assign(storm.detail)
       edge.assign(storm.edge)
@@ -97,7 +94,10 @@ function bodyAt(
       const column = columnStrength(layer, weather, background.coverage, resolution)
       const rough = topBillows(column)
       const needed = neededStrength(layer, height).toConst() as Float
-      body.assign(column.sub(needed).add(shape.coarse.mul(amount.coarse).mul(rough)))
+      const body = column
+        .sub(needed)
+        .add(shape.coarse.mul(amount.coarse).mul(rough))
+        .toConst() as Float
       const share = fineShare(body)
       const fine = shape.fine.mul(amount.fine).mul(rough)
       strength.assign(body.add(fine.mul(share)))
@@ -105,7 +105,7 @@ function bodyAt(
       crumbs.assign(crumbDensity(column, needed))
     }
   )
-  return { sample, height, weather, body, strength, detailStrength, edge, crumbs }
+  return { height, weather, strength, detailStrength, edge, crumbs }
 }
 
 /**
@@ -158,11 +158,11 @@ export function sampleLayerAt(
       }
     )
   }
-  bodies.forEach(({ height, body, edge, crumbs }, i) => {
+  bodies.forEach(({ height, edge, crumbs }, i) => {
     const { density, strength } = found[i]
     If(strength.greaterThan(0), () => {
       const full = densityAtHeight(layer, height).mul(crumbs)
-      density.assign(densityOf(strength, body, edge).mul(full))
+      density.assign(densityOf(strength, edge).mul(full))
     })
   })
   If(unresolvedFraction.greaterThan(0), () => {
@@ -172,7 +172,7 @@ export function sampleLayerAt(
       .div(bodies.length)
       .toConst()
     If(covered.greaterThan(0), () => {
-      const height = heightIn(layer, middle.altitude).clamp(0, 1).toConst() as Float
+      const height = heightIn(layer, middle.altitude).clamp().toConst() as Float
       const cosine = direction?.dot(middle.up).toConst() as Float | undefined
       const mean = unresolvedDensity(field, layer, covered, height, unresolved, cosine)
       for (const { density, strength } of found) {

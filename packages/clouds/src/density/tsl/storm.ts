@@ -126,7 +126,7 @@ export const stormBody = /*#__PURE__*/ Fn(
     const { tower, leastTower, widening, narrowing, dome, anvil, above, below, blend } = stormShape
     const { anvilFrom, grown, least } = stormShape
     const aspect = radius.div(thickness).toConst() as Float
-    const tall = aspect.div(grown).clamp(0, 1).sqrt().max(least).mul(thickness).toConst() as Float
+    const tall = aspect.div(grown).clamp().sqrt().max(least).mul(thickness).toConst() as Float
     const y = height.mul(thickness).toConst() as Float
     const narrow = radius.mul(tower).max(thickness.mul(leastTower).min(radius)).toConst()
     const base = mix(radius, narrow, anvilShare).toConst() as Float
@@ -147,7 +147,7 @@ export const stormBody = /*#__PURE__*/ Fn(
     const gradient = slope.mul(slope).add(steep.mul(steep)).sqrt().max(1e-6)
     const inAnvil = norm.oneMinus().mul(norm.div(gradient)).toConst() as Float
     const soft = tall.mul(blend).toConst() as Float
-    const share = inTower.sub(inAnvil).div(soft).mul(0.5).add(0.5).clamp(0, 1).toConst() as Float
+    const share = inTower.sub(inAnvil).div(soft).mul(0.5).add(0.5).clamp().toConst() as Float
     return mix(inAnvil, inTower, share).add(soft.mul(share).mul(share.oneMinus()))
   },
   layout('welkinStormBody', 'float', {

@@ -12,8 +12,7 @@ import type { CloudWeather } from './weather'
 
 /** Strength of a storm at a place, as of `LayerSample`, in lengths of `stormBillows.unit`. */
 export interface StormStrength {
-  /** With coarse billows, and with fine ones, too [–]. */
-  readonly body: Float
+  /** With all billows [–]. */
   readonly strength: Float
   /** Strength of detail, per deviation of its noise [–]. */
   readonly detail: Float
@@ -71,11 +70,10 @@ export function stormStrength(
   const stormDistance = frayedDistance(field, layer, weather, ice, height, level)
   const smooth = smoothStormStrength(layer, { ...weather, stormDistance }, height)
   // Bulges of the surface, not clouds beside it.
-  const near = smooth.div(reach).add(1).clamp(0, 1)
-  const body = smooth.add(billows.coarse.mul(amount).mul(near).mul(coarse)).toConst() as Float
+  const near = smooth.div(reach).add(1).clamp()
+  const bulges = near.mul(billows.coarse).mul(coarse).add(billows.fine.mul(fine))
   return {
-    body,
-    strength: body.add(billows.fine.mul(amount).mul(fine)).toConst(),
+    strength: smooth.add(amount.mul(bulges)).toConst(),
     detail: amount.mul(layer.detailAmount).mul(detail).toConst(),
     edge: ice.mul(softIce).add(1).div(layer.perEdge).toConst(),
     // Fibres reach as far again in the thin rim as in its edge.

@@ -74,7 +74,7 @@ const seenShare = (layer: LayerNodes, height: Float): Float =>
     .div(strengthForm.strongest)
     .oneMinus()
     .mul(columnForm.tops)
-    .clamp(0, 1)
+    .clamp()
     .mul(
       height
         .div(layer.anvil.mix(columnForm.hiddenBelow, columnForm.hiddenByAnvil))

@@ -42,7 +42,7 @@ function coverageOf(layer: LayerNodes, weather: Float, variance: Float, coverage
     weather.add(quantileOf(coverage)).div(variance.add(edges.mul(edges)).sqrt())
   )
   // Neither more nor less than all: the distribution has tails.
-  const all = chance.sub(0.5).mul(contrast).add(0.5).clamp(0, 1)
+  const all = chance.sub(0.5).mul(contrast).add(0.5).clamp()
   return coverage.greaterThan(0).select(all, 0)
 }
 

@@ -77,6 +77,39 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
  */
 export const ISOLATED_DEPTH = 0.2
 
+/** Ground below a cloud. Lengths [m]. */
+export interface GroundShadeNodes {
+  /** Scaled optical depth of the cloud on a ray of light. */
+  depthThrough: Float
+  /** 1 for a cloud deck, 0 for an isolated cloud. */
+  layered: Float
+  /** Radius of an isolated cloud. */
+  radius: Float
+  /** Altitude of the sample. */
+  altitude: Float
+  /** The light against the local up. */
+  cosLight: Float
+}
+
+/** Cosine of the lowest light whose rays grow longer, and shadows fall farther aside, with its height. */
+export const LOWEST_COSINE = 0.12
+
+/**
+ * Part of the ground's light that is left below a cloud, in [0, 1]: ground in its shade is dark. A deck shades all of it, by Eddington's
+ * transmittance 1/(1 + ¾ (1 − g′) τ′); an isolated cloud a disc of its own size, which is so far away along the light and fills r²/(r² + d²) of
+ * the view down (form factor of a disc). Twin: test/twins/cloudLight.ts
+ */
+export function litGround(
+  light: CloudLight,
+  { depthThrough, layered, radius, altitude, cosLight }: GroundShadeNodes
+): Float {
+  const cosine = cosLight.abs().max(LOWEST_COSINE).toConst() as Float
+  const slab = light.oneMinusAsymmetry.mul(0.75).mul(depthThrough).mul(cosine)
+  const distance = altitude.div(cosine.mul(radius)).toConst()
+  const shaded = mix(distance.mul(distance).add(1).reciprocal(), 1, layered)
+  return slab.div(slab.add(1)).mul(shaded).oneMinus()
+}
+
 /** Depths about a sample between sky and ground. Depths are scaled optical depths along the vertical. */
 export interface CloudAmbientNodes {
   /** Depth from the sample to the cloud's top. */

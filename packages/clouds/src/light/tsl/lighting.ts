@@ -5,7 +5,7 @@ import { footprintOf, type CloudSample } from '../../density/tsl/sample'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { facingFit } from '../cpu/facing'
 import { lateralLeakFit as fit } from '../cpu/lateralLeak'
-import { cloudAmbientShares, cloudSource } from './cloudLight'
+import { cloudAmbientShares, cloudSource, litGround } from './cloudLight'
 import { localDepths } from './localDepths'
 import { isNight, nightShare } from './night'
 import type { ShadedSample, ShadingContext, ShadingLight } from './shadingContext'
@@ -55,9 +55,9 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
   const depthBelow = depths.below.mul(scale).toConst() as Float
   const { top, base } = shaded.layers
   // Clouds are about as wide as their layer is thick.
+  const cloudWidth = top.sub(base).max(1).toConst()
   const footprint = footprintOf(context.field, sample).toConst() as Float
-  const width = footprint.div(top.sub(base).max(1))
-  const resolved = width.oneMinus().clamp().toConst() as Float
+  const resolved = footprint.div(cloudWidth).oneMinus().clamp().toConst() as Float
   const [level, rise] = fit.unresolvedDiameter
   const unresolved = source.cosine.abs().mul(rise).add(level)
   const lit = {
@@ -84,10 +84,11 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     cosView,
     resolved
   })
+  const below = litGround(light, { ...lit, ...sample, radius: cloudWidth.div(2) })
   return {
     direct: direct.mul(cast),
     sky: ambient.sky,
-    ground: ambient.ground,
+    ground: ambient.ground.mul(below),
     fine: fine?.mul(cast)
   }
 }

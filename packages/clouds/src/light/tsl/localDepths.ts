@@ -3,10 +3,8 @@ import { footprintOf } from '../../density/tsl/sample'
 import { extinctionNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
 import { loop, type Float, type Int, type Vec3 } from '../../tsl-types'
+import { LOWEST_COSINE } from './cloudLight'
 import type { ShadedSample, ShadingContext, ShadingLight } from './shadingContext'
-
-/** Cosine of the lowest light whose rays grow longer with its height. */
-const LOWEST_COSINE = 0.12
 
 /**
  * Distance towards the light that is probed sample by sample: per distance from the camera, at least and

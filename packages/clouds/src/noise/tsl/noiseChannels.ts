@@ -41,7 +41,7 @@ export function channelNoise(channel: NoiseChannel, index: number, p: Vec3): Flo
   })
   const z = sum.div(deviation).toConst() as Float
   if (encoding === 'uniform') return cumulative(z)
-  return z.mul(ENCODING_SCALE).add(0.5).clamp(0, 1)
+  return z.mul(ENCODING_SCALE).add(0.5).clamp()
 }
 
 /**
@@ -57,5 +57,5 @@ export function curlNoise(index: number, p: Vec3): Vec2 {
   return turbulence
     .mul(vec3(perX, perY, 0))
     .add(0.5)
-    .clamp(0, 1).xy
+    .clamp().xy
 }

@@ -134,7 +134,7 @@ function fallAlong(
     const noise = coarse.mul(fallForm.coarseStreaks).add(fine.mul(fallForm.fineStreaks))
     const lost = smoothstep(...strengthForm.billowLevels, level)
     const streak = fallStreak(noise, nodes.streaks.mul(layer.shapeAmount), lost)
-    const onset = nodes.ceiling.sub(altitude).div(nodes.ceiling.sub(baseAltitude)).clamp(0, 1)
+    const onset = nodes.ceiling.sub(altitude).div(nodes.ceiling.sub(baseAltitude)).clamp()
     rate.assign(fallRate(nodes.rate, rank, streak, depth.mul(nodes.perVirga)).mul(onset))
   })
   return { rate, rank }

@@ -1,7 +1,7 @@
 import type { ScatteringPhase } from '@welkin/atmosphere'
 import { float, mix, vec3, vec4 } from 'three/tsl'
 import type { CloudSample } from '../../density/tsl/sample'
-import { cloudAmbientShares, cloudSource } from '../../light/tsl/cloudLight'
+import { cloudAmbientShares, cloudSource, litGround } from '../../light/tsl/cloudLight'
 import { henyeyGreenstein, singlePhase } from '../../light/tsl/cloudPhase'
 import { lightAt, shade } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
@@ -95,10 +95,13 @@ export function lightPrecipitation(
     cosView
   })
   // Clouds as wide as they are deep hide less of the sky the deeper one is below them.
-  const fall = baseAltitude.sub(sample.altitude).max(0).div(period.mul(CLOUD_RADIUS)).toConst()
+  const radius = period.mul(CLOUD_RADIUS).toConst() as Float
+  const fall = baseAltitude.sub(sample.altitude).max(0).div(radius).toConst()
   const hidden = mix(fall.mul(fall).add(1).reciprocal(), 1, layered)
   const sky = mix(0.5, under.sky, hidden)
-  const ground = mix(0.5, under.ground, hidden)
+  const ground = mix(0.5, under.ground, hidden).mul(
+    litGround(light, { ...nodes, ...sample, radius })
+  )
   const shares = vec3(often.max(0).mul(cast), sky, ground).mul(weight).toConst() as Vec3
   return shade(field, sample, shares, once.mul(cast))
 }
