@@ -128,7 +128,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       wind: { east: 9, north: 4 }
     }
   ],
-  overcast: [{ ...deck, weatherScale: 0.6 }],
+  overcast: [deck],
   cumulonimbus: [{ ...storm, precipitation: { rate: 0, ...hail } }, smallCumulus],
   altocumulus: [altocumulus],
   cirrus: [cirrus],

@@ -221,5 +221,5 @@ export function litGround(
   const cosine = Math.max(Math.abs(cosLight), 0.12)
   const passed = eddingtonDiffuse(depthThrough * cosine, 1 - scalePhase(phase).moments[1])
   const disc = Math.sin(Math.atan2(radius, altitude / cosine)) ** 2
-  return 1 - (layered + (1 - layered) * disc) * (1 - passed)
+  return 1 - (1 - layered) * disc * (1 - passed)
 }

@@ -95,9 +95,10 @@ export interface GroundShadeNodes {
 export const LOWEST_COSINE = 0.12
 
 /**
- * Part of the ground's light that is left below a cloud, in [0, 1]: ground in its shade is dark. A deck shades all of it, by Eddington's
- * transmittance 1/(1 + ¾ (1 − g′) τ′); an isolated cloud a disc of its own size, which is so far away along the light and fills r²/(r² + d²) of
- * the view down (form factor of a disc). Twin: test/twins/cloudLight.ts
+ * Part of the ground's light that is left below a cloud, in [0, 1]: ground in its shade is dark. An isolated cloud lets Eddington's
+ * transmittance 1/(1 + ¾ (1 − g′) τ′) through to a disc of its own size, which is so far away along the light and fills r²/(r² + d²) of
+ * the view down (form factor of a disc). Below decks all is left: march and mean decks agree only by this (e2e/gpu/clouds/world).
+ * Twin: test/twins/cloudLight.ts
  */
 export function litGround(
   light: CloudLight,
@@ -106,7 +107,7 @@ export function litGround(
   const cosine = cosLight.abs().max(LOWEST_COSINE).toConst() as Float
   const slab = light.oneMinusAsymmetry.mul(0.75).mul(depthThrough).mul(cosine)
   const distance = altitude.div(cosine.mul(radius)).toConst()
-  const shaded = mix(distance.mul(distance).add(1).reciprocal(), 1, layered)
+  const shaded = layered.oneMinus().div(distance.mul(distance).add(1))
   return slab.div(slab.add(1)).mul(shaded).oneMinus()
 }
 
