@@ -90,6 +90,9 @@ interface Storm {
 /** Base and top of the storm, and half an edge [m]. */
 const [BASE, TOP, HALF] = [1000, 12_000, 20_000]
 
+/** Cover of storms: there is one. */
+const SELDOM = 0.001
+
 /** Steps of a ray of light in float64, and pieces of the view ray. */
 const [RAY_STEPS, PIECES] = [400, 80]
 
@@ -144,7 +147,7 @@ for (const [label, storm, least] of [
     const { node, draw, dispose } = await unseenClouds(
       renderer,
       set,
-      new CloudLayers([{ ...fog, baseAltitude: BASE, topAltitude: TOP }]),
+      new CloudLayers([{ ...fog, baseAltitude: BASE, topAltitude: TOP, coverage: SELDOM }]),
       new SparseNoise(),
       ({ offset: { y, z } }) => {
         const outside = y.sub(east).abs().max(z.sub(north).abs()).greaterThan(HALF)
