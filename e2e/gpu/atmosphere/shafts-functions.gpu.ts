@@ -146,10 +146,7 @@ gpuTest(
       renderer,
       // Nearer than all.
       places.map(([x, y]) => [x, y, 1, 0]),
-      ({ x, y, z }) => {
-        const at = vec2(x, y)
-        return vec4(grid.read(at, grid.meanAt(at), airTo(z), null, litTo), 0)
-      }
+      ({ x, y, z }) => vec4(grid.read(vec2(x, y), airTo(z), null, litTo), 0)
     )
     places.forEach((at, i) => {
       expectClose(results[4 * i], part * 1e-4, { relative: 2e-3 }, `at ${at.join(', ')}`)

@@ -27,12 +27,15 @@ const NEAR_MEAN = 0.2
 const LEAST_LOST = 5e-4
 
 /** Octaves beyond all depths: those of means where next to nothing is lost, where light is steep, and of pixels whose grounds are at different depths. */
-const LIT_DEPTH = 40
-const STEEP_DEPTH = 128
+const LIT_DEPTH = 512
+const STEEP_DEPTH = 540
 const APART_DEPTH = 6e4
 
-/** Octaves that none is beyond but means marked as apart. Greater: lines a pixel wide beside them, where they have little weight (*Sun behind cumulus*). */
-const STEEP_LIMIT = 160
+/**
+ * Octaves that none is beyond but means marked as apart. A sixty-fourth of a mark is beyond all depths, and of that for apart beyond this limit: lines a pixel
+ * wide were drawn beside marks, where they have little weight (*Sun behind cumulus*, and ridges in the rain of *Valley, all day*).
+ */
+const STEEP_LIMIT = 600
 
 /** Octaves of the light of clear air by which pixels differ that weigh half as much as those that have the same. Greater: halos at silhouettes. */
 const SIMILAR = 0.02
@@ -258,32 +261,23 @@ export class LostLightGrid {
     return rarity.sub(least).max(rarity.mul(LEAST_LEFT)).inverseSqrt().mul(this.#freePath)
   }
 
-  /** Place among the texels of a place in the picture. */
-  #placeOf(at: Vec2): Vec2 {
-    return at.mul(this.#scale).add(this.#offset).toConst()
-  }
-
-  /** Mean of the grid's pixels around a place in the picture, to be read once for it: light that is lost, and depth. */
-  meanAt(at: Vec2): Vec4 {
-    return sampleLevel0(this.#texels, this.#placeOf(at)).toConst()
-  }
-
   /**
    * Light that a pixel loses, as {@link LostLight} has it.
    *
    * @param at - Its place in the picture.
-   * @param mean - Mean around it.
    * @param seen - Its air.
    * @param tolerance - Octaves by which its depth may be off: it is as near to those around as that allows. Null is none.
    * @param lit - Light of its air up to a distance [m]. Called in a branch.
    */
   read(
     at: Vec2,
-    mean: Vec4,
     { rarity, least }: SeenAir,
     tolerance: Float | null,
     lit: (distance: Float) => Vec3
   ): Vec3 {
+    const middle = at.mul(this.#scale).add(this.#offset).toConst() as Vec2
+    // Light that is lost, and depth.
+    const mean = sampleLevel0(this.#texels, middle).toConst()
     const own = depthOf(rarity)
     const moved = (depth: Float): Float =>
       tolerance ? depth.sub(own).clamp(tolerance.negate(), tolerance).toConst() : float(0)
@@ -295,7 +289,7 @@ export class LostLightGrid {
     const isOff = (depth: Float | number): Bool => mean.w.sub(depth).abs().greaterThan(NEAR_MEAN)
     If(isOff(own).and(isOff(LIT_DEPTH)), () => {
       const size = this.#gridSize
-      const place = this.#placeOf(at).div(this.#texelSize).sub(1).toConst() as Vec2
+      const place = middle.div(this.#texelSize).sub(1).toConst() as Vec2
       const isSteep = mean.w.lessThan(STEEP_LIMIT)
       const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
       // Steps of a depth show where the nearest to it counts for more than others.

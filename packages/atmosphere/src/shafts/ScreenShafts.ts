@@ -14,7 +14,7 @@ import { lostLight, staggered } from './tsl/lostLight'
 import type { CameraShafts } from './CameraShafts'
 import { spacingIn } from './quality'
 import { LostLightGrid, THIN_HEIGHT, type LostLight, type SeenAir } from './LostLightGrid'
-import { hasForeground, rarityAt, rarityThrough } from './tsl/rarity'
+import { rarityThrough } from './tsl/rarity'
 import type { ShaftRay } from './tsl/shadowsAlong'
 import { distanceOf } from './tsl/without'
 import { DepthRays } from '../view/DepthRays'
@@ -149,9 +149,8 @@ export class ScreenShafts implements ScreenShadows {
 
   #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
     const at = this.#place
-    const mean = this.grid.meanAt(at)
-    const seen = this.#seenAt(at, end, mean, transmittance)
-    const lost = this.grid.read(at, mean, seen, seen.tolerance, this.#lightOn(this.#rayTo(end)))
+    const seen = this.#seenAt(at, end, true, transmittance)
+    const lost = this.grid.read(at, seen, seen.tolerance, this.#lightOn(this.#rayTo(end)))
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -174,8 +173,8 @@ export class ScreenShafts implements ScreenShadows {
     return left
   }
 
-  /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. With the `mean` around it, roughly. */
-  #seenAt(at: Vec2, end: RayEnd, mean?: Vec4, transmittance?: Float): Seen {
+  /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. */
+  #seenAt(at: Vec2, end: RayEnd, isRough: boolean, transmittance?: Float): Seen {
     const { foreground, grid } = this
     const least = grid.leastRarity(end.cosView)
     const whole = this.#rarityOf(end, least)
@@ -184,17 +183,10 @@ export class ScreenShafts implements ScreenShadows {
     const isSeen = passes.lessThan(CLEAR).toConst()
     const octaves = float(FAR_OCTAVES).toVar()
     const rarity = whole.add(this.#isForward.mul(UNSEEN_RARITY)).toVar()
-    const look = (): void => {
-      octaves.assign(foreground.octavesAt(at, mean !== undefined))
+    If(isSeen, () => {
+      octaves.assign(foreground.octavesAt(at, isRough))
       const nearness = octaves.negate().exp2().max(end.nearness)
       rarity.assign(rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
-    }
-    If(isSeen, () => {
-      if (mean === undefined) return look()
-      // A pixel in the midst of clouds need not be looked at.
-      If(hasForeground(mean, rarity, passes), () => {
-        rarity.assign(rarityAt(mean.w))
-      }).Else(look)
     })
     const tolerance = isSeen.select(foreground.tolerance, 0).toConst() as Float
     return { rarity, least, tolerance, octaves, passes }
@@ -213,7 +205,7 @@ export class ScreenShafts implements ScreenShadows {
     const end = this.#endIn(renderer, at)
     const ray = this.#rayTo(end)
     const { distance } = ray
-    const { octaves, passes, rarity, least } = this.#seenAt(at, end)
+    const { octaves, passes, rarity, least } = this.#seenAt(at, end, false)
     const { isOrthographicCamera } = this.#shafts.camera as OrthographicCamera
     const start = isOrthographicCamera
       ? view.toMapped(vec3(this.#rays.position(renderer, at, float(0.5)).xy, 0))
