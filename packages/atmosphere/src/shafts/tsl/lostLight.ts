@@ -6,8 +6,8 @@ import { enterAir } from '../../skyVolume/tsl/skyVolumeBake'
 import { lightTransmittance } from '../../transmittance/tsl/transmittance'
 import { loop, type Float, type Vec2, type Vec4 } from '../../tsl-types'
 import { SKY_DISTANCE } from '../../view/SkyLayer'
-import type { Viewpoint } from '../../view/tsl/viewpoint'
 import type { ViewUniforms } from '../../view/ViewUniforms'
+import { distanceToLight } from './distanceToLight'
 import { litRay, type LitPoint } from './litRay'
 import { lostDiffuse } from './lostDiffuse'
 import { dimmedBy, lostInMedia } from './lostInMedia'
@@ -147,21 +147,6 @@ export function lostLight(
     lost.addAssign(lostDiffuse(air, diffuse))
   })
   return lost
-}
-
-/** Distance from the camera at which a ray leaves the planet's shadow; 0 where it begins in the light [m]. */
-function distanceToLight(
-  { radius, toHorizon, cosLight }: Viewpoint,
-  cosView: Float,
-  cosViewLight: Float
-): Float {
-  const below = radius.mul(cosLight).toConst() as Float
-  // Squares of the planet's radius and of the distance from the axis of its shadow, and half the growth of that.
-  const depth = below.mul(below).sub(toHorizon).toConst() as Float
-  const outward = radius.mul(cosView.sub(cosLight.mul(cosViewLight))).toConst() as Float
-  const root = outward.mul(outward).add(cosViewLight.mul(cosViewLight).oneMinus().mul(depth))
-  const leaves = depth.div(outward.add(root.max(0).sqrt()).max(1e-3))
-  return cosLight.lessThan(0).and(depth.greaterThan(0)).select(leaves, 0).toConst()
 }
 
 /** Light scattered once that a ray gains at a distance in the air, for unit irradiance [1/(m sr)]. */
