@@ -185,41 +185,45 @@ function isBehindDeck(top: number, distance: number, view: number): boolean {
   return lowest < bottomRadius + top
 }
 
-gpuTest('leaves the light that has passed over a closed deck, after sunset', async t => {
-  const renderer = await t.createRenderer(size)
-  for (const top of DECK_TOPS) {
-    const set = stage(renderer, DUSK, { quality: 'reference' })
-    const { shafts } = set
-    const layer = { ...fog, baseAltitude: top - 100, topAltitude: top, density: 0.5 }
-    const { node, draw, dispose } = await unseenClouds(
-      renderer,
-      set,
-      new CloudLayers([layer]),
-      new SparseNoise(),
-      () => float(0.5)
-    )
-    shafts.add(castsOnce(node))
-    for (const view of [8, 150]) {
-      lookAt(set, view)
-      for (let i = 0; i < 2; i++) await draw()
-      const darkAt = (distance: number): number => Number(isBehindDeck(top, distance, view))
-      const { whole, lost } = marchedLoss({ view, sun: DUSK }, Infinity, darkAt)
-      for (const quality of ['reference', 'medium'] as const) {
-        shafts.set({ quality })
-        const got = await measuredLoss(set)
-        const parts = (light: number[]): string =>
-          got.map((_, k) => (light[k] / whole[k]).toFixed(3)).join(' ')
-        t.note(`${top} m, ${view}°, ${quality}: lost ${parts(lost)}, got ${parts(got)}`)
-        for (let k = 0; k < 3; k++)
-          expectClose(
-            got[k],
-            lost[k],
-            { absolute: 0.015 * whole[k] },
-            `${view}°, ${quality}, #${k}`
-          )
+gpuTest(
+  'leaves the light that has passed over a closed deck, after sunset',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    for (const top of DECK_TOPS) {
+      const set = stage(renderer, DUSK, { quality: 'reference' })
+      const { shafts } = set
+      const layer = { ...fog, baseAltitude: top - 100, topAltitude: top, density: 0.5 }
+      const { node, draw, dispose } = await unseenClouds(
+        renderer,
+        set,
+        new CloudLayers([layer]),
+        new SparseNoise(),
+        () => float(0.5)
+      )
+      shafts.add(castsOnce(node))
+      for (const view of [8, 150]) {
+        lookAt(set, view)
+        for (let i = 0; i < 2; i++) await draw()
+        const darkAt = (distance: number): number => Number(isBehindDeck(top, distance, view))
+        const { whole, lost } = marchedLoss({ view, sun: DUSK }, Infinity, darkAt)
+        for (const quality of ['reference', 'medium'] as const) {
+          shafts.set({ quality })
+          const got = await measuredLoss(set)
+          const parts = (light: number[]): string =>
+            got.map((_, k) => (light[k] / whole[k]).toFixed(3)).join(' ')
+          t.note(`${top} m, ${view}°, ${quality}: lost ${parts(lost)}, got ${parts(got)}`)
+          for (let k = 0; k < 3; k++)
+            expectClose(
+              got[k],
+              lost[k],
+              { absolute: 0.015 * whole[k] },
+              `${view}°, ${quality}, #${k}`
+            )
+        }
       }
+      dispose()
+      set.dispose()
     }
-    dispose()
-    set.dispose()
-  }
-})
+  },
+  { backends: ['webgpu'] }
+)
