@@ -28,6 +28,7 @@ const fiberDocument = 'packages/atmosphere/README.md'
 /** Names of the quick starts that the later blocks of their documents go on with. */
 const given = `import type { Atmosphere, SkyLightProbe, SunDirectionalLight } from '@welkin/atmosphere'
 import type { CloudLayers, CloudsNode } from '@welkin/clouds'
+import type { Terrain } from '@welkin/terrain'
 import type { PerspectiveCamera, Scene } from 'three'
 import type { Node, PassNode, RenderPipeline, TextureNode, WebGPURenderer } from 'three/webgpu'
 
@@ -45,6 +46,7 @@ declare global {
   const air: Node
   const picture: TextureNode
   const pipeline: RenderPipeline
+  const terrain: Terrain
 }
 `
 
