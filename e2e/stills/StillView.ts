@@ -49,7 +49,7 @@ import { Landscape } from '../../stories/src/hills/Landscape'
 import { aeroplaneShadow } from '../../stories/src/shafts/aeroplaneShadow'
 import { castLandShadow, LIGHT_DISTANCE } from '../../stories/src/shafts/landShadow'
 import { Ridge } from '../../stories/src/shafts/Ridge'
-import type { Still } from './scenes'
+import type { Still } from './Still'
 import { meadow, redDust, snow } from '../../stories/src/hills/soil'
 import { readPicture } from './readPicture'
 

@@ -3,7 +3,7 @@ import { RenderTarget } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { Valley } from '../../stories/src/valley/Valley'
 import { openingState } from '../../stories/src/valley/openingState'
-import type { ValleyStill } from './scenes'
+import type { ValleyStill } from './Still'
 import { readPicture } from './readPicture'
 
 /** Time of waves and clouds [s]. */

@@ -1,8 +1,6 @@
 import {
-  Atmosphere,
   MoonDirectionalLight,
   SkyLightProbe,
-  SunDirectionalLight,
   aerialPerspective,
   aerialPerspectiveFog,
   airglow,
@@ -44,131 +42,24 @@ import {
   lightning,
   precipitationShafts
 } from '@welkin/clouds'
-import type { CloudsNode } from '@welkin/clouds'
-import {
-  DataTexture,
-  Matrix4,
-  Mesh,
-  MeshStandardMaterial,
-  PerspectiveCamera,
-  PlaneGeometry,
-  PointLight,
-  RepeatWrapping,
-  Scene
-} from 'three'
+import { Matrix4, PointLight } from 'three'
 import { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
 import { ao } from 'three/addons/tsl/display/GTAONode.js'
 import { builtinAOContext, pass, screenUV, shadow } from 'three/tsl'
-import { NodeMaterial, RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
+import { NodeMaterial, RenderPipeline, type Node } from 'three/webgpu'
 import { readFileSync } from 'node:fs'
 import { expect, it } from 'vitest'
-import { recordingRenderer } from '../headless/recordingContext'
-import { traceShaders, type BuiltPipeline } from '../headless/traceShaders'
-
-// What three asks of a browser.
-Object.assign(globalThis, {
-  self: globalThis,
-  requestAnimationFrame: () => 0,
-  cancelAnimationFrame: () => undefined
-})
-
-/** Frames until a lit material and a pass have all that they sample. */
-const FRAMES = 4
-const LIT = 'lit'
-
-function picture(): DataTexture {
-  const made = new DataTexture(new Uint8Array(4), 1, 1)
-  made.wrapS = RepeatWrapping
-  return made
-}
-
-/** A lit plane under the sun. */
-class World {
-  readonly atmosphere = new Atmosphere().setSunAngles(40, 120)
-  readonly camera = new PerspectiveCamera(50, 16 / 9, 1, 1e5)
-  readonly scene = new Scene()
-  readonly material = new MeshStandardMaterial({ name: LIT })
-  readonly sun = new SunDirectionalLight(this.atmosphere, 50)
-  readonly sky = new SkyLightProbe(this.atmosphere)
-  readonly #pass = pass(this.scene, this.camera, { samples: 0 })
-  readonly color = this.#pass.getTextureNode()
-  readonly depth = this.#pass.getTextureNode('depth')
-  readonly air = aerialPerspective(this.color, this.depth, this.camera, this.atmosphere)
-
-  constructor() {
-    const ground = new Mesh(new PlaneGeometry(1, 1), this.material)
-    ground.receiveShadow = ground.castShadow = true
-    ground.frustumCulled = false
-    this.scene.add(ground, this.sun, this.sky)
-  }
-
-  clouds(cover: DataTexture | null = null): CloudsNode {
-    const worldMap = cover && cloudWorldMap(cover)
-    const { air, depth, camera, atmosphere } = this
-    return clouds(air, depth, camera, atmosphere, cloudPreset('mixed'), { worldMap })
-  }
-}
-
-/** Pipelines of a name that are made while something is drawn. */
-async function pipelinesOf(
-  name: string,
-  draw: (renderer: WebGPURenderer) => () => void
-): Promise<BuiltPipeline[]> {
-  const renderer = await recordingRenderer(16, 9)
-  renderer.shadowMap.enabled = true
-  const built = traceShaders(renderer)
-  const frame = draw(renderer)
-  for (let i = 0; i < FRAMES; i++) frame()
-  await renderer.dispose()
-  return built.filter(each => each.name === name)
-}
-
-/** Most textures that shaders of a name sample while something is drawn. */
-async function count(
-  name: string,
-  draw: (renderer: WebGPURenderer) => () => void
-): Promise<number> {
-  const built = await pipelinesOf(name, draw)
-  return Math.max(...built.map(({ fragment }) => fragment.textures))
-}
-
-/** Textures of the lit material, with something added. */
-const inLit = (add: (world: World) => void): Promise<number> =>
-  count(LIT, renderer => {
-    const world = new World()
-    add(world)
-    return () => renderer.render(world.scene, world.camera)
-  })
-
-/** Textures of a pass, by default the last, of a post effect made of the world. */
-const inPass = (effect: (world: World) => Node, name = 'RenderPipeline'): Promise<number> =>
-  count(name, renderer => {
-    const pipeline = new RenderPipeline(renderer)
-    pipeline.outputNode = effect(new World())
-    return () => pipeline.render()
-  })
-
-/** Textures of the last pass and of the lit material, with layers in the sky. */
-const withLayers = async (layers: () => SkyLayer[]): Promise<[number, number]> => [
-  await inPass(({ atmosphere, air }) => {
-    atmosphere.add(...layers())
-    return air
-  }),
-  await inLit(({ atmosphere, scene }) => {
-    atmosphere.add(...layers())
-    scene.fogNode = aerialPerspectiveFog(atmosphere)
-  })
-]
-
-/** First and second number of a README's row on a feature. */
-function stated(name: string, feature: string): [string, string] {
-  const url = new URL(`../../packages/${name}/README.md`, import.meta.url)
-  const section = readFileSync(url, 'utf8').split('\n## Textures\n')[1].split('\n## ')[0]
-  const row = section.split('\n').find(line => line.startsWith(`| ${feature}`))
-  if (row === undefined) throw new Error(`no row begins with: ${feature}`)
-  const [, , sky, lit] = row.split('|').map(cell => cell.trim())
-  return [sky, lit]
-}
+import {
+  inLit,
+  inPass,
+  LIT,
+  picture,
+  pipelinesOf,
+  stated,
+  texturesOf,
+  withLayers,
+  World
+} from '../harness/sampledTextures'
 
 it('features of the atmosphere sample as many textures as its README says', async () => {
   // Besides the pass itself: its colour, its depth and the air; and in the material three's own table.
@@ -211,7 +102,7 @@ const withSixMaps = (
   cascades: new (...given: ConstructorParameters<typeof CascadedShadowNode>) => Node,
   hasOcclusion: boolean
 ): Promise<number> =>
-  count(LIT, renderer => {
+  texturesOf(LIT, renderer => {
     const world = new World()
     const { atmosphere, camera, scene, sun, sky, material } = world
     for (const slot of ['map', 'normalMap', 'roughnessMap', 'metalnessMap', 'aoMap', 'emissiveMap'])
@@ -272,7 +163,7 @@ it('light of surfaces and shafts sample as many textures as the README says', as
     stated('atmosphere', '`heightFieldShadow`')[0]
   )
   const forward = (casters: number, isLit: boolean): Promise<number> =>
-    count(isLit ? LIT : 'Background.material', renderer => {
+    texturesOf(isLit ? LIT : 'Background.material', renderer => {
       const { atmosphere, camera, scene, sun } = new World()
       scene.fogNode = aerialPerspectiveFog(atmosphere)
       scene.backgroundNode = skyBackground(atmosphere)
@@ -399,7 +290,7 @@ it('near rain and wet ground sample as many textures as the README says', async 
   const air = await inPass(world => world.air)
   /** Textures of drops or flakes under sun, sky and lamps, and a roof. */
   const falling = (make: typeof rainfall, name: string, hasShelter: boolean): Promise<number> =>
-    count(name, renderer => {
+    texturesOf(name, renderer => {
       const { atmosphere, camera, scene, sun, sky } = new World()
       const shelter = hasShelter ? new PrecipitationShelter(scene) : undefined
       scene.add(make(atmosphere, { rate: 5, lights: [sun, sky, new PointLight()], shelter }))
