@@ -84,11 +84,14 @@ function changedShare(a: Uint8Array, b: Uint8Array): number {
   return (4 * count) / a.length
 }
 
+const isSeen = ({ changed, noise, least }: SwitchChange): boolean =>
+  changed >= Math.max(least, OVER_NOISE * noise)
+
 /** Line of a report. */
-export const switchLine = ({ name, changed, noise, least }: SwitchChange): string => {
+const switchLine = (change: SwitchChange): string => {
   const percent = (share: number): string => `${(100 * share).toFixed(2)} %`.padStart(8)
-  const isSeen = changed >= Math.max(least, OVER_NOISE * noise)
-  return `${isSeen ? ' ' : '✗'} ${name.padEnd(20)} changes ${percent(changed)}, of itself ${percent(noise)}`
+  const { name, changed, noise } = change
+  return `${isSeen(change) ? ' ' : '✗'} ${name.padEnd(20)} changes ${percent(changed)}, of itself ${percent(noise)}`
 }
 
 /**
@@ -157,7 +160,7 @@ export async function measureSwitches(
   valley.dispose()
   target.dispose()
   release(renderer)
-  const dead = changes.filter(change => switchLine(change).startsWith('✗'))
+  const dead = changes.filter(change => !isSeen(change))
   if (dead.length > 0) throw new Error(`switches: ${dead.map(({ name }) => name).join(', ')}`)
   return changes
 }
