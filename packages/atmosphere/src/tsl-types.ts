@@ -1,5 +1,5 @@
 // What @types/three 0.187 lacks or gets wrong, in one place.
-import { Loop as threeLoop, mix, uniformArray as threeUniformArray } from 'three/tsl'
+import { Loop as threeLoop, uniformArray as threeUniformArray } from 'three/tsl'
 import type { Vector4 } from 'three'
 import type { Node, TextureNode } from 'three/webgpu'
 
@@ -43,7 +43,3 @@ export const gatherRed = (source: TextureNode, corner: Vec2): Vec4 =>
     .sample(corner)
     .gather(0)
     .toConst()
-
-/** Mean of what {@link gatherRed} has read, by the place between the texels, in [0, 1]². */
-export const mixed = ({ x, y, z, w }: Vec4, part: Vec2): Float =>
-  mix(mix(w, z, part.x), mix(x, y, part.x), part.y).toConst()

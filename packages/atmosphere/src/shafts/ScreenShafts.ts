@@ -246,7 +246,7 @@ export class ScreenShafts implements ScreenShadows {
     return { offset, inverse, nearness, cosView, distance }
   }
 
-  #rayTo({ offset, inverse, cosView, distance }: Omit<RayEnd, 'nearness'>): ShaftRay {
+  #rayTo({ offset, inverse, cosView, distance }: RayEnd): ShaftRay {
     const direction = offset.mul(inverse).toConst() as Vec3
     const cosViewLight = direction.dot(this.#shafts.view.lightDirection).toConst() as Float
     return { direction, cosView: cosView.clamp(-1, 1).toConst(), cosViewLight, distance }

@@ -247,6 +247,7 @@ function boundsOf(heights: Float32Array): [number, number] {
     const height = heights[i]
     if (height < least) least = height
     if (height > most) most = height
+    // NaN from the first on that is not finite.
     zero += height - height
   }
   return [least + zero, most + zero]

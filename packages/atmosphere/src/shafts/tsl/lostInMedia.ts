@@ -41,6 +41,14 @@ export function dimmedBy(
 }
 
 /**
+ * Way from the start of a dark stretch to the middle of its samples [steps]. The stretch is that of the steps, not of the places in them.
+ *
+ * @param dark - Dark samples, side by side.
+ * @param jitter - Place of samples in their steps, in (0, 1).
+ */
+export const middleOfDark = (dark: Float, jitter: Float): Float => dark.sub(1).mul(0.5).add(jitter)
+
+/**
  * Light that media in the air lose, such as fog, for unit irradiance of the source [1/sr]: of light scattered once the dark
  * part of samples that each stand for as much of it, and what is missing of the diffuse light in the middle.
  *

@@ -6,7 +6,7 @@ import type { ShadowedMedium } from '../../view/SkyLayer'
 import type { ViewUniforms } from '../../view/ViewUniforms'
 import { litRay } from './litRay'
 import { lostDiffuse } from './lostDiffuse'
-import { dimmedBy } from './lostInMedia'
+import { dimmedBy, middleOfDark } from './lostInMedia'
 import { scatteredOnce } from './lostLight'
 import { polarRay } from './polarMap'
 import { shadowsAlong, type ShadowedAir, type ShaftRay } from './shadowsAlong'
@@ -68,8 +68,7 @@ export function lostInSlice(
       const once = scatteredOnce(air, airAt, cosViewLight)(distance.sub(limits.start))
       const part = sum.div(samples).toConst()
       const darkLength = length.mul(part).toConst() as Float
-      // The dark part as one stretch: that of the steps, not of the places in them.
-      const half = sum.sub(1).mul(0.5).add(jitter).mul(length).div(samples)
+      const half = middleOfDark(sum, jitter).mul(length).div(samples)
       const light = past(once, distance.sub(half), darkLength)
       lost.assign(light.mul(darkLength))
       // Of fog what the slice adds to the light before it.

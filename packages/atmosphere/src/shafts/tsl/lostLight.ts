@@ -10,7 +10,7 @@ import type { ViewUniforms } from '../../view/ViewUniforms'
 import { distanceToLight } from './distanceToLight'
 import { litRay, type LitPoint } from './litRay'
 import { lostDiffuse } from './lostDiffuse'
-import { dimmedBy, lostInMedia } from './lostInMedia'
+import { dimmedBy, lostInMedia, middleOfDark } from './lostInMedia'
 import { polarRay } from './polarMap'
 import { shadowsAlong, shadowsBeside, type ShadowedAir, type ShaftRay } from './shadowsAlong'
 import { warpedSteps, type WarpedSteps } from './warpedSteps'
@@ -188,9 +188,8 @@ function lostInGroup(
   If(dark.greaterThan(0), () => {
     const centre = sum.div(dark).toConst() as Float
     const inAir = steps.distance(centre).toConst() as Float
-    // The dark part as one stretch: that of the steps, not of the places in them.
     const darkWidth = dark.mul(perSample).toConst() as Float
-    const from = centre.sub(dark.sub(1).mul(0.5).add(jitter).mul(perSample))
+    const from = centre.sub(middleOfDark(dark, jitter).mul(perSample))
     const light = past(scatteredAt(inAir), from, darkWidth)
     lost.assign(light.mul(steps.slope(centre).mul(darkWidth)))
   })

@@ -4,14 +4,13 @@ import type { TextureNode, UniformNode } from 'three/webgpu'
 import {
   gatherRed,
   loop,
-  mixed,
   type Bool,
   type Float,
   type Vec2,
   type Vec3,
   type Vec4
 } from '../../tsl-types'
-import { lightRayAt, MOST_COTANGENT, type PolarFrame } from './polarMap'
+import { bilinear, lightRayAt, MOST_COTANGENT, type PolarFrame } from './polarMap'
 
 /** A shadow map of a light as the shader that merges them sees it. */
 export interface ShadowMapNodes {
@@ -73,7 +72,7 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: De
   const first = place.floor().toConst()
   const part = place.sub(first).toConst()
   const four = gatherRed(depth, first.add(1).div(size))
-  const among = (weight: Vec2): Float => mixed(four, weight)
+  const among = (weight: Vec2): Float => bilinear(four, weight)
   const { x, y, z, w } = four
   const farther = isReversed ? 'min' : 'max'
   const farthest = x[farther](y)[farther](z)[farther](w)

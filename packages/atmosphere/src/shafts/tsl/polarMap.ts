@@ -1,6 +1,6 @@
-import { atan, vec2 } from 'three/tsl'
+import { atan, mix, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
-import { gatherRed, mixed, type Float, type Vec2, type Vec3 } from '../../tsl-types'
+import { gatherRed, type Float, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
 
 /** Columns and rows by which {@link softDark} reads beside a place, about as far: with one alone, shadows of hills on clouds far away have edges in steps (*Fog from above*). */
 const BESIDE = [
@@ -106,6 +106,10 @@ export function darkPart(
 const placeOf = (frame: PolarFrame, { sinViewLight, row }: PolarRay, distance: Float): Vec2 =>
   vec2(columnAt(frame, distance.mul(sinViewLight)), row).toConst()
 
+/** Mean of what {@link gatherRed} has read, by the place between the texels, in [0, 1]². */
+export const bilinear = ({ x, y, z, w }: Vec4, part: Vec2): Float =>
+  mix(mix(w, z, part.x), mix(x, y, part.x), part.y).toConst()
+
 /** Dark part of the air between the four rays of light about a place among columns and rows. */
 function darkAt(map: TextureNode, frame: PolarFrame, { cotangent }: PolarRay, at: Vec2): Float {
   const place = at.toConst()
@@ -113,7 +117,7 @@ function darkAt(map: TextureNode, frame: PolarFrame, { cotangent }: PolarRay, at
   // Not a step: loops about it have a variable of that name.
   const nearer = gatherRed(map, first.add(1).mul(frame.texelSize)).sub(cotangent)
   const four = nearer.sign().max(0).toConst()
-  return mixed(four, place.sub(first).toConst())
+  return bilinear(four, place.sub(first).toConst())
 }
 
 /** As {@link darkPart}, of rays of light about, too: edges of shadows are soft. */
