@@ -14,7 +14,8 @@ export interface LightningCost {
   /** Time that lightning adds between flashes, and while one is seen. */
   darkMs: number
   flashMs: number
-  /** The largest passes of a frame with a flash. */
+  /** Passes of a frame without a flash, and with one. */
+  darkPasses: number[]
   passes: number[]
 }
 
@@ -46,6 +47,7 @@ export async function timeLightning(
       withoutMs: ms,
       darkMs: dark.ms - ms,
       flashMs: flash.ms - ms,
+      darkPasses: dark.passes,
       passes: flash.passes
     })
     storm.dispose()
@@ -55,12 +57,15 @@ export async function timeLightning(
   return costs
 }
 
+const line = (passes: number[]): string => passes.map(ms => ms.toFixed(3)).join(' ')
+
 /** A line of a report. */
 export const lightningLine = ({
   name,
   withoutMs,
   darkMs,
   flashMs,
+  darkPasses,
   passes
 }: LightningCost): string =>
-  `lightning, ${name.padEnd(8)} dark ${darkMs.toFixed(3)} ms   flash ${flashMs.toFixed(3)} ms   (without ${withoutMs.toFixed(3)} ms; passes ${passes.map(ms => ms.toFixed(3)).join(' ')})`
+  `lightning, ${name.padEnd(8)} dark ${darkMs.toFixed(3)} ms   flash ${flashMs.toFixed(3)} ms   (without ${withoutMs.toFixed(3)} ms; passes ${line(darkPasses)}; with a flash ${line(passes)})`

@@ -9,7 +9,7 @@ import { mieAngles, mieSphere } from './optics/mieSphere'
 import { waterIndex } from './optics/refraction'
 import { overSunDisc, SUN_RADIUS } from './optics/sunDisc'
 import { wavelengths } from './spectra'
-import { RAIN_RATES, rainGrid } from '../src/optics/cpu/rainRates'
+import { RAIN_COLOR_STEP, RAIN_RATES, rainGrid } from '../src/optics/cpu/rainRates'
 
 /** Diameters of drops [mm]: even in their logarithm. Smaller ones and larger ones scatter little. */
 const COUNT = Number(process.argv[2] ?? 200)
@@ -103,7 +103,7 @@ const rows = phases.map(phase => {
   return row.map(color => color.map(value => Math.max(value, 1e-5)))
 })
 
-const text = encodePhases(rows)
+const text = encodePhases(rows, RAIN_COLOR_STEP)
 const file = fileURLToPath(new URL('../src/optics/rainData.ts', import.meta.url))
 writeFileSync(
   file,

@@ -46,7 +46,7 @@ const _zero = new Vector2()
 const _box = new Box2()
 const _picture = new Box2()
 
-/** Quads of all pieces: where each begins and ends, and which corner a vertex is. */
+/** Quads of all pieces: which corner a vertex is, for its position, and where its piece begins and ends. */
 function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
   const from: number[] = []
   const to: number[] = []
@@ -61,21 +61,14 @@ function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
     ]) {
       from.push(...piece.from, piece.brightness)
       to.push(...piece.to, piece.isBranch ? 1 : 0)
-      corner.push(end, side)
+      corner.push(end, side, 0)
     }
     index.push(...[0, 1, 2, 2, 1, 3].map(k => 4 * i + k))
   }
   const geometry = new BufferGeometry()
-  geometry.setAttribute(
-    'position',
-    new Float32BufferAttribute(
-      from.filter((_, i) => i % 4 < 3),
-      3
-    )
-  )
+  geometry.setAttribute('position', new Float32BufferAttribute(corner, 3))
   geometry.setAttribute('pieceFrom', new Float32BufferAttribute(from, 4))
   geometry.setAttribute('pieceTo', new Float32BufferAttribute(to, 4))
-  geometry.setAttribute('pieceCorner', new Float32BufferAttribute(corner, 2))
   geometry.setIndex(index)
   return geometry
 }
@@ -124,7 +117,7 @@ export class BoltPass {
     const { frame } = viewRays
     const from = attribute('pieceFrom', 'vec4') as unknown as Vec4
     const to = attribute('pieceTo', 'vec4') as unknown as Vec4
-    const corner = attribute('pieceCorner', 'vec2') as unknown as Vec2
+    const corner = attribute('position', 'vec3') as unknown as Vec3
     const projection = this.#projection as unknown as Mat4
     const toView = this.#toView as unknown as Mat3
     const clip = (p: Vec3): Vec4 =>

@@ -5,6 +5,7 @@ import type { Renderer } from 'three/webgpu'
 import type { ShadingContext } from '../light/tsl/shadingContext'
 import { CORNERS } from '../temporal/tsl/cells'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
+import { endOf } from '../precipitation/tsl/fallStretch'
 import { encodeDistance } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
 import type { Float, LevelTexture, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
@@ -111,13 +112,6 @@ const middleOf = (fallBlock: Float): Float => fallBlock.sub(1).mul(0.5)
 
 const nodesOf = ({ textures }: RenderTarget): LevelTexture<Vec2>[] =>
   textures.map(each => texture(each) as unknown as LevelTexture<Vec2>)
-
-/** log₂ of where a ray ends: nothing is seen behind opaque clouds. */
-const endOf = (ray: Vec4, { x, y, z, w }: Vec4): Float =>
-  ray.z
-    .greaterThan(0)
-    .select(ray.y, encodeDistance(x.max(y).max(z.max(w))))
-    .toConst()
 
 function draw(
   scene: FallScene,

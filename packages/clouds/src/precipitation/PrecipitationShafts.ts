@@ -25,7 +25,14 @@ import { DIFFRACTED, fallFloor, fallForm, STREAK_WIDTH } from './fallForm'
 import { fallenFrom } from './tsl/fall'
 import type { FallNodes } from './tsl/fallColumn'
 import { fallExtinctions } from './tsl/fallExtinctions'
-import { distanceAt, FARTHEST, fallStretch, partAt, type FallStretch } from './tsl/fallStretch'
+import {
+  distanceAt,
+  endOf,
+  FARTHEST,
+  fallStretch,
+  partAt,
+  type FallStretch
+} from './tsl/fallStretch'
 import { CLOUD_RADIUS, lightPrecipitation } from './tsl/lightPrecipitation'
 import { LEAST_SEEN, marchPrecipitation } from './tsl/marchPrecipitation'
 
@@ -77,7 +84,8 @@ export class PrecipitationShafts {
     () => new Vector4()
   )
   readonly #array = vec4Array(this.#values)
-  readonly #ceiling = number(NOWHERE)
+  /** Altitude above which nothing falls; below 0 where nothing falls at all [m]. */
+  readonly ceiling = number(NOWHERE)
   readonly #floor = number(NOWHERE)
   readonly #width = number()
   readonly #shortest = number(LONGEST_STEP)
@@ -92,7 +100,7 @@ export class PrecipitationShafts {
   /** False where nothing falls, or all of it is too far below the camera to be seen: by the last `update`. */
   isFalling = false
   #version = 0
-  #state: readonly number[] = []
+  #state = ''
 
   /** @throws If an option is unknown, or the drops are none. */
   constructor(options: PrecipitationShaftsOptions = {}) {
@@ -112,11 +120,12 @@ export class PrecipitationShafts {
     let [ceiling, floor, most] = [NOWHERE, Infinity, 0]
     let shortest = LONGEST_STEP
     let [firstLayer, endLayer] = [CloudLayers.maxLayers, 0]
-    const state: number[] = []
     for (const [i, { parameters }] of [...layers].entries()) {
       const { baseAltitude, topAltitude, coverage, density, wind, shear } = parameters
-      const all = { ...dry, ...parameters.precipitation }
-      const { rate, share, virgaDepth, freezingLevel, hail, streaks } = all
+      const { rate, share, virgaDepth, freezingLevel, hail, streaks } = {
+        ...dry,
+        ...parameters.precipitation
+      }
       const thickness = topAltitude - baseAltitude
       const layerCeiling = baseAltitude + thickness * fallForm.onset
       const growth =
@@ -129,7 +138,6 @@ export class PrecipitationShafts {
       second.set(x, y, z, 0).multiplyScalar(growth / 2).w = hail
       third.set(x, y, z, 0).multiplyScalar(shear).w = layerCeiling
       fourth.fromArray([...(fallColumnOf(parameters)?.parts ?? [0, 0, 0]), streaks])
-      state.push(...Object.values(all))
       if (rate === 0 || coverage === 0) continue
       ceiling = Math.max(ceiling, layerCeiling)
       floor = Math.min(floor, fallFloor(baseAltitude, virgaDepth))
@@ -149,12 +157,13 @@ export class PrecipitationShafts {
       this.#width.value = MathUtils.lerp(period.value * CLOUD_RADIUS, DECK_WIDTH, layered.value)
     }
     this.isFalling = endLayer > 0 && height < ceiling + FARTHEST
-    this.#ceiling.value = ceiling
+    this.ceiling.value = ceiling
     this.#floor.value = Math.max(floor, NOWHERE)
     this.#shortest.value = shortest
     this.#firstLayer.value = Math.min(firstLayer, endLayer)
     this.#endLayer.value = endLayer
-    if (state.some((value, i) => value !== this.#state[i])) this.#version++
+    const state = JSON.stringify([...layers].map(layer => layer.parameters.precipitation))
+    if (state !== this.#state) this.#version++
     this.#state = state
     return this.#version + (this.drops?.version ?? 0)
   }
@@ -162,11 +171,6 @@ export class PrecipitationShafts {
   /** The pass that draws it, for the clouds of a node. */
   passOf(scene: FallScene, marched: MarchedTargets, cast: LitRays, shaded: CloudTargets): FallPass {
     return new FallPass(scene, this, marched, cast, shaded)
-  }
-
-  /** Altitude above which nothing falls; below 0 where nothing falls at all [m]. */
-  get ceiling(): Float {
-    return this.#ceiling
   }
 
   /** Extinction of light by what falls from a layer, without what is only diffracted [1/m]. To be called inside of a shader function. */
@@ -187,9 +191,7 @@ export class PrecipitationShafts {
    * @param altitude - Altitude of a plane [m].
    */
   deckFall(index: Int, altitude: Float): DeckFallNodes {
-    const start = index.mul(int(STRIDE)).toConst()
-    const { share, ceiling } = this.fallOf(index)
-    const parts = this.#array.element(start.add(int(3))).xyz.toConst() as Vec3
+    const { share, ceiling, parts } = this.fallOf(index)
     const place = ceiling.sub(altitude).mul(3).div(ceiling.max(1))
     const over = parts
       .dot(
@@ -216,6 +218,7 @@ export class PrecipitationShafts {
       hail: second.w,
       shearAxis: third.xyz,
       ceiling: third.w,
+      parts: fourth.xyz,
       streaks: fourth.w
     }
   }
@@ -226,11 +229,9 @@ export class PrecipitationShafts {
    * @param marched - Ray of the march: log₂ of its end, and transmittance, in y and z.
    * @param distances - Distances of the clouds' points [m].
    */
-  #stretchOn(field: CloudField, direction: Vec3, marched: Vec4, { x, y, z, w }: Vec4): FallStretch {
-    // Behind opaque clouds nothing is seen.
-    const last = x.max(y).max(z.max(w))
-    const end = marched.z.greaterThan(0).select(marched.y.exp2(), last).toConst() as Float
-    const space = { ceiling: this.#ceiling, floor: this.#floor }
+  #stretchOn(field: CloudField, direction: Vec3, marched: Vec4, distances: Vec4): FallStretch {
+    const end = endOf(marched, distances).exp2().toConst() as Float
+    const space = { ceiling: this.ceiling, floor: this.#floor }
     return fallStretch(field, space, { direction, end })
   }
 
@@ -276,7 +277,7 @@ export class PrecipitationShafts {
         first: this.#firstLayer.toInt().toConst(),
         last: this.#endLayer.toInt().toConst()
       },
-      ceiling: this.#ceiling,
+      ceiling: this.ceiling,
       width: this.#width,
       shortest: this.#shortest
     }

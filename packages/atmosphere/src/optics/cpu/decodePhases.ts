@@ -1,44 +1,47 @@
 /** Steps of the stored logarithms to the base 2. */
 export const LOG_STEPS = 40
 
-/** First character of the stored text, and how many there are. */
-export const FIRST_CODE = 35
-export const CODES = 57
+/** Code of the character for no difference, and greatest difference of a character. */
+export const ZERO_CODE = 63
+export const MOST_STEP = 28
 
 /**
- * Phase functions from their text: numbers are differences to the ones before, of the logarithm of green, then of red
+ * Number to expect after the last one: that of the sample before, and as much more as the phase function before has grown there.
+ *
+ * @param numbers - Three of each sample, one phase function after the other.
+ * @param at - Place of the number.
+ * @param samples - Samples of a phase function.
+ */
+export function expectedNumber(numbers: readonly number[], at: number, samples: number): number {
+  const [before, above, both] = [1, samples, samples + 1].map(n => numbers[at - 3 * n] ?? 0)
+  return before + above - both
+}
+
+/**
+ * Phase functions from their text: numbers are differences to those that `expectedNumber` has, of the logarithm of green, then of red
  * over green and of blue over green. A greatest or least difference goes on in the next character.
  *
  * @param text - Made by scripts/optics/encodePhases.ts.
  * @param samples - Samples of a phase function.
+ * @param colorStep - Steps of red and blue, over those of green.
  * @returns Red, green and blue of each sample, one phase function after the other, over sunlight's colour [1/sr].
  */
-export function decodePhases(text: string, samples: number): Float32Array {
-  const most = (CODES - 1) / 2
-  const values: number[] = []
+export function decodePhases(text: string, samples: number, colorStep = 1): Float32Array {
+  const numbers: number[] = []
   let difference = 0
   for (const character of text) {
-    const code = character.charCodeAt(0) - FIRST_CODE
-
-    const step = code - most
+    const step = character.charCodeAt(0) - ZERO_CODE
     difference += step
-    if (Math.abs(step) < most) {
-      values.push(difference)
+    if (Math.abs(step) < MOST_STEP) {
+      numbers.push(difference + expectedNumber(numbers, numbers.length, samples))
       difference = 0
     }
   }
-  const phases = new Float32Array(values.length)
-  const count = values.length / (3 * samples)
-  for (let row = 0; row < count; row++) {
-    let [green, red, blue] = [0, 0, 0]
-    for (let i = 0; i < samples; i++) {
-      const at = 3 * (row * samples + i)
-      green += values[at]
-      red += values[at + 1]
-      blue += values[at + 2]
-      const logarithms = [green + red, green, green + blue]
-      logarithms.forEach((value, k) => (phases[at + k] = 2 ** (value / LOG_STEPS)))
-    }
-  }
-  return phases
+  return Float32Array.from(numbers, (_, at) => {
+    const channel = at % 3
+    const green = numbers[at - channel]
+    const logarithm =
+      channel === 1 ? green : green + colorStep * numbers[channel === 0 ? at + 1 : at]
+    return 2 ** (logarithm / LOG_STEPS)
+  })
 }

@@ -21,6 +21,8 @@ export interface FallNodes {
   readonly streaks: Float
   /** Altitude above which nothing falls yet. */
   readonly ceiling: Float
+  /** Optical depths of `FallColumn.parts`. */
+  readonly parts: Vec3
   /** Wind's axis times half its growth with height [1/s], and times the layer's shear [–]: downwind is `cross(·, zenith)`. */
   readonly windAxis: Vec3
   readonly shearAxis: Vec3

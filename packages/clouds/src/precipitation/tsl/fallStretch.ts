@@ -2,6 +2,7 @@ import { mix } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import { crossings, FAR_AWAY } from '../../march/tsl/layerBoundaries'
 import type { CloudRay } from '../../march/tsl/march'
+import { encodeDistance } from '../../temporal/tsl/packing'
 import type { Float, Vec4 } from '../../tsl-types'
 
 /** Longest stretch of a ray that is marched [m]: the weather map ends there, and haze hides shafts. */
@@ -23,6 +24,13 @@ export interface FallStretch {
   readonly first: Float
   readonly end: Float
 }
+
+/** log₂ of where a marched ray ends: behind opaque clouds nothing is seen. @param distances - Of the clouds' points [m]. */
+export const endOf = (marched: Vec4, { x, y, z, w }: Vec4): Float =>
+  marched.z
+    .greaterThan(0)
+    .select(marched.y, encodeDistance(x.max(y).max(z.max(w))))
+    .toConst()
 
 /**
  * Stretch of a ray that is marched; its span is 0 or less where nothing falls. To be called inside of a shader function.
