@@ -2,14 +2,15 @@
 export const flashes = [
   {
     name: 'lightning-ground',
-    about: 'a flash to the ground at night: a forked channel, the cloud above glows from inside',
+    about:
+      'a flash to the ground at night: a forked channel, the cloud above glows from inside, the land is lit',
     clouds: { preset: 'cumulonimbus' },
     place: { longitude: 139.571, latitude: 35.995 },
     lightning: { kind: 'ground', azimuth: 1, distance: 17_500 },
     altitude: 200,
     sun: new Date('2026-06-14T14:00:00Z'),
     view: { azimuth: 0, pitch: 16 },
-    land: 'planet'
+    land: 'hills'
   },
   {
     name: 'lightning-cloud',
@@ -42,6 +43,6 @@ export const flashes = [
     altitude: 200,
     sun: new Date('2026-06-14T14:00:00Z'),
     view: { azimuth: 0, pitch: 16 },
-    land: 'planet'
+    land: 'hills'
   }
 ] as const
