@@ -1,7 +1,7 @@
-import { Fn, If, exp, float, mix, smoothstep, uniformArray, vec3, vec4 } from 'three/tsl'
+import { Break, Fn, If, exp, float, mix, smoothstep, uniformArray, vec3, vec4 } from 'three/tsl'
 import { Vector4 } from 'three'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
-import { GRAVITY, PERIOD, SEA_WAVES, WAVE_SLOPE } from '../seaWaves'
+import { GRAVITY, PERIOD, SEA_WAVES, WARP, WARPED, WARPS, WAVE_SLOPE } from '../seaWaves'
 import { gradientAlong } from './gradientAlong'
 import { schlick } from './schlick'
 
@@ -91,6 +91,9 @@ export function seaSurface(
     const sum = vec4(0).toVar() as unknown as Variable
     const find = (): void => {
       const steepest = seaVariance.sqrt().mul(WAVE_SLOPE).toConst()
+      const [a, b, c] = WARPS.map(warp => vec3(...warp).mul((2 * Math.PI) / PERIOD))
+      const phases = vec3(offset.dot(a), offset.dot(b), offset.dot(c)).toConst()
+      const warped = offset.add(phases.sin().mul(WARP)).toConst() as Vec3
       // A loop: where there is no sea, the code of its waves costs time, too.
       loop('wave', SEA_WAVES.length, wave => {
         const { xyz: vector, w: frequency } = vectors.element(wave).toConst() as Vec4
@@ -99,16 +102,23 @@ export function seaSurface(
           .mul(frequency)
           .mul((2 * Math.PI) / GRAVITY)
           .toConst() as Float
-        const periods = offset.dot(vector).div(PERIOD).sub(seconds.mul(frequency))
-        const kept = footprint.mul(perLength).oneMinus().max(0).mul(steepest).toConst()
+        If(footprint.mul(perLength).greaterThan(1), () => {
+          Break()
+        })
+        const periods = warped.dot(vector).div(PERIOD).sub(seconds.mul(frequency))
+        const kept = footprint.mul(perLength).oneMinus().mul(steepest).toConst()
         const tilt = periods
           .fract()
           .mul(2 * Math.PI)
           .cos()
           .mul(kept)
-        sum.addAssign(vec4(vector.mul(tilt.div(perLength.mul(PERIOD))), kept.mul(kept).div(3)))
+        sum.addAssign(
+          vec4(vector.mul(tilt.div(perLength.mul(PERIOD))), kept.mul(kept).mul(WARPED / 3))
+        )
       })
-      sum.assign(vec4(gradientAlong(sum.xyz, up), sum.w))
+      const turn = sum.xyz.mul(phases.cos()).mul(WARP).toConst() as Vec3
+      const slope = sum.xyz.add(a.mul(turn.x)).add(b.mul(turn.y)).add(c.mul(turn.z)) as Vec3
+      sum.assign(vec4(gradientAlong(slope, up), sum.w))
     }
     // From afar no wave is kept.
     if (hasWaves) If(cover.greaterThan(0).and(footprint.lessThan(LONGEST_KEPT)), find)
