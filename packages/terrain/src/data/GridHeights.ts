@@ -9,8 +9,9 @@ import {
 } from '@welkin/geo'
 import type { HeightSample } from '../heights/HeightSource'
 import type { PageRequest, PageSource } from '../pages/PageSource'
+import { appendSky } from './appendSky'
 import { geographicGradient, geographicPlace, type GeographicPlace } from './geographic'
-import { fillSmooth, pagePlaces, type Extent } from './pagePlaces'
+import { fillSmooth, pagePlaces, type Extent, type PagePlaces } from './pagePlaces'
 import { fillHoles, halved, type Raster } from './Raster'
 import {
   fillInside,
@@ -199,16 +200,30 @@ export class GridHeights implements PageSource {
   }
 
   loadHeights(request: PageRequest): Float32Array {
-    const { side, spacing } = request
     const places = pagePlaces(request, (at, target) => this.#cellOf(at, target), this.#turn)
-    const level = MathUtils.clamp(
-      Math.floor(Math.log2(spacing / this.#cell)),
-      0,
-      this.#levels.length - 1
-    )
+    const heights = new Float32Array(request.side ** 2)
+    if (!this.#fill(heights, request, places)) return heights.fill(this.#outside)
+    const radius = this.#isFlat ? 1 : this.#radii.x
+    return appendSky(heights, request, (i, east, north, detail) => {
+      const y = places.y[i]
+      const parallel = this.#isFlat ? 1 : Math.max(Math.cos(this.#north - y * this.#stepY), 1e-3)
+      const column = places.x[i] + east / (this.#stepX * radius * parallel)
+      const row = y - north / (this.#stepY * radius)
+      return this.#sample(column, row, this.#levelOf(detail / 2), raster).value
+    })
+  }
+
+  /** Level whose cells are not larger. */
+  #levelOf(spacing: number): number {
+    const level = Math.floor(Math.log2(spacing / this.#cell))
+    return MathUtils.clamp(level, 0, this.#levels.length - 1)
+  }
+
+  /** Fills the heights of a page. @returns False if all of it is far outside, and nothing has been filled. */
+  #fill(heights: Float32Array, { side, spacing }: PageRequest, places: PagePlaces): boolean {
+    const level = this.#levelOf(spacing)
     const { width, height, values } = this.#levels[level]
     const shrink = 2 ** -level
-    const heights = new Float32Array(side * side)
     const { extent } = places
     const { west, east, north, south } = this.#boundsIn(extent)
     if (
@@ -217,7 +232,7 @@ export class GridHeights implements PageSource {
       extent.south <= north ||
       extent.north >= south
     )
-      return heights.fill(this.#outside)
+      return false
     const pixel = (cells: number): number => cells * shrink - 0.5
     const isInside = (x: number, y: number): boolean =>
       pixel(x) >= 1 && pixel(y) >= 1 && pixel(x) < width - 2 && pixel(y) < height - 2
@@ -225,9 +240,10 @@ export class GridHeights implements PageSource {
       const [x, y] = [places.x[i], places.y[i]]
       return isInside(x, y) ? valueInside(values, width, pixel(x), pixel(y)) : NaN
     }
-    if (fillSmooth(places, side, [shrink, shrink], insideAt, heights)) return heights
+    if (fillSmooth(places, side, [shrink, shrink], insideAt, heights)) return true
     if (isInside(extent.west, extent.north) && isInside(extent.east, extent.south)) {
-      return fillInside(values, width, places, { scale: [shrink, shrink], first: [0, 0] }, heights)
+      fillInside(values, width, places, { scale: [shrink, shrink], first: [0, 0] }, heights)
+      return true
     }
     for (let i = 0; i < heights.length; i++) {
       const [x, y] = [places.x[i], places.y[i]]
@@ -236,7 +252,7 @@ export class GridHeights implements PageSource {
       else if (x <= west || x >= east || y <= north || y >= south) heights[i] = this.#outside
       else heights[i] = this.#sample(x, y, level, raster).value
     }
-    return heights
+    return true
   }
 
   /** Bounds, among places of an extent, beyond which `outside` is the height [cells]. */

@@ -4,6 +4,7 @@ import { checkPositive } from '@welkin/geo'
 import type { HeightSample } from '../heights/HeightSource'
 import { levelOf } from '../heights/sampleGround'
 import type { PageRequest, PageSource } from '../pages/PageSource'
+import { appendSky } from './appendSky'
 import {
   geographicGradient,
   geographicPlace,
@@ -168,11 +169,8 @@ export class HeightTiles implements PageSource {
     const x = mercatorX(place.longitude)
     const y = this.#rowOf(place.latitude)
     let z = this.maxZoom
-    const { wide } = this.#store
-    const keyAt = (): number =>
-      tileKey(z, Math.floor(x * wide * 2 ** z), Math.floor(y * 2 ** z), wide)
-    while (z > this.minZoom && this.#store.peek(keyAt()) === undefined) z--
-    this.#store.get(keyAt())
+    while (z > this.minZoom && this.#store.peek(this.#keyAt(z, x, y)) === undefined) z--
+    this.#store.get(this.#keyAt(z, x, y))
     // A new function each time: the tiles that were found before may be others now.
     this.#sample(z, x, y, key => this.#store.peek(key), near)
     target.height = near.value
@@ -193,8 +191,7 @@ export class HeightTiles implements PageSource {
       pagePlaces(request, (at, target) => this.#project(at, target), 1)
     const first = placesOf()
     const keys = this.#keysOf(z, first, side)
-    const fill = (places: PagePlaces): Float32Array => {
-      const heights = new Float32Array(side * side)
+    const fillHeights = (places: PagePlaces, heights: Float32Array): Float32Array => {
       const between = this.#pyramid.heightsBetween(z, places, find)
       const isWhole = [...keys].every(key => find(key)?.hasHoles === false)
       const scale = this.#pyramid.size * 2 ** z
@@ -212,6 +209,17 @@ export class HeightTiles implements PageSource {
             : between.at(i)
       }
       return heights
+    }
+    const fill = (places: PagePlaces): Float32Array => {
+      const heights = fillHeights(places, new Float32Array(side * side))
+      return appendSky(heights, request, (i, east, north, detail) => {
+        const [x, y] = this.#beside(places.x[i], places.y[i], east, north)
+        const wanted = Math.min(z, this.#store.levelOf(detail / 2))
+        let level = wanted
+        while (level < z && find(this.#keyAt(level, x, y)) === undefined) level++
+        const isThere = find(this.#keyAt(level, x, y)) !== undefined
+        return this.#sample(isThere ? level : wanted, x, y, find, near).value
+      })
     }
     const missing = [...keys].filter(key => {
       const tile = this.#store.get(key)
@@ -232,6 +240,12 @@ export class HeightTiles implements PageSource {
     this.#pyramid.forget()
   }
 
+  /** Key of the tile of a level at a place of the map. */
+  #keyAt(z: number, x: number, y: number): number {
+    const { wide } = this.#store
+    return tileKey(z, Math.floor(x * wide * 2 ** z), Math.floor(y * 2 ** z), wide)
+  }
+
   #rowOf(latitude: number): number {
     return this.#isMercator ? mercatorY(latitude) : geographicY(latitude)
   }
@@ -239,6 +253,15 @@ export class HeightTiles implements PageSource {
   /** True for a row near a pole, beyond the map or close to its end. */
   #isPolar(y: number): boolean {
     return this.#isMercator && isPolar(y)
+  }
+
+  /** Place on the map so far east and north of another [m], but beyond the map's edges. */
+  #beside(x: number, y: number, east: number, north: number): [x: number, y: number] {
+    const turn = 2 * Math.PI * this.#options.ellipsoid.radii.x
+    const latitude = this.#isMercator ? mercatorLatitude(y) : Math.PI * (0.5 - y)
+    const narrow = Math.max(Math.cos(latitude), 1e-3)
+    const tall = this.#isMercator ? narrow : 0.5
+    return [x + east / (turn * narrow), MathUtils.clamp(y - north / (turn * tall), 0, 1)]
   }
 
   /** Place on the map. */
