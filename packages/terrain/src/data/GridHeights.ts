@@ -204,13 +204,27 @@ export class GridHeights implements PageSource {
     const heights = new Float32Array(request.side ** 2)
     if (!this.#fill(heights, request, places)) return heights.fill(this.#outside)
     const radius = this.#isFlat ? 1 : this.#radii.x
-    return appendSky(heights, request, (i, east, north, detail) => {
-      const y = places.y[i]
+    return appendSky(heights, request, i => {
+      const [x, y] = [places.x[i], places.y[i]]
       const parallel = this.#isFlat ? 1 : Math.max(Math.cos(this.#north - y * this.#stepY), 1e-3)
-      const column = places.x[i] + east / (this.#stepX * radius * parallel)
-      const row = y - north / (this.#stepY * radius)
-      return this.#sample(column, row, this.#levelOf(detail / 2), raster).value
+      const across = 1 / (this.#stepX * radius * parallel)
+      const down = 1 / (this.#stepY * radius)
+      return (east, north, detail) => {
+        const level = this.#levelOf(detail / 2)
+        const [column, row] = [x + east * across, y - north * down]
+        const inside = this.#insideAt(level, column, row)
+        return Number.isNaN(inside) ? this.#sample(column, row, level, raster).value : inside
+      }
     })
+  }
+
+  /** Height at a place whose sixteen pixels are all in the grid; NaN beside. @param x - As of `#sample`. */
+  #insideAt(level: number, x: number, y: number): number {
+    const { width, height, values } = this.#levels[level]
+    const shrink = 2 ** -level
+    const [column, row] = [x * shrink - 0.5, y * shrink - 0.5]
+    const isInside = column >= 1 && row >= 1 && column < width - 2 && row < height - 2
+    return isInside ? valueInside(values, width, column, row) : NaN
   }
 
   /** Level whose cells are not larger. */
@@ -222,7 +236,7 @@ export class GridHeights implements PageSource {
   /** Fills the heights of a page. @returns False if all of it is far outside, and nothing has been filled. */
   #fill(heights: Float32Array, { side, spacing }: PageRequest, places: PagePlaces): boolean {
     const level = this.#levelOf(spacing)
-    const { width, height, values } = this.#levels[level]
+    const { width, values } = this.#levels[level]
     const shrink = 2 ** -level
     const { extent } = places
     const { west, east, north, south } = this.#boundsIn(extent)
@@ -233,15 +247,13 @@ export class GridHeights implements PageSource {
       extent.north >= south
     )
       return false
-    const pixel = (cells: number): number => cells * shrink - 0.5
-    const isInside = (x: number, y: number): boolean =>
-      pixel(x) >= 1 && pixel(y) >= 1 && pixel(x) < width - 2 && pixel(y) < height - 2
-    const insideAt = (i: number): number => {
-      const [x, y] = [places.x[i], places.y[i]]
-      return isInside(x, y) ? valueInside(values, width, pixel(x), pixel(y)) : NaN
-    }
+    const insideAt = (i: number): number => this.#insideAt(level, places.x[i], places.y[i])
     if (fillSmooth(places, side, [shrink, shrink], insideAt, heights)) return true
-    if (isInside(extent.west, extent.north) && isInside(extent.east, extent.south)) {
+    const corners = [
+      this.#insideAt(level, extent.west, extent.north),
+      this.#insideAt(level, extent.east, extent.south)
+    ]
+    if (!corners.some(Number.isNaN)) {
       fillInside(values, width, places, { scale: [shrink, shrink], first: [0, 0] }, heights)
       return true
     }

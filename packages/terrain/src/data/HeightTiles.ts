@@ -212,13 +212,19 @@ export class HeightTiles implements PageSource {
     }
     const fill = (places: PagePlaces): Float32Array => {
       const heights = fillHeights(places, new Float32Array(side * side))
-      return appendSky(heights, request, (i, east, north, detail) => {
-        const [x, y] = this.#beside(places.x[i], places.y[i], east, north)
-        const wanted = Math.min(z, this.#store.levelOf(detail / 2))
-        let level = wanted
-        while (level < z && find(this.#keyAt(level, x, y)) === undefined) level++
-        const isThere = find(this.#keyAt(level, x, y)) !== undefined
-        return this.#sample(isThere ? level : wanted, x, y, find, near).value
+      return appendSky(heights, request, i => {
+        const [left, top] = [places.x[i], places.y[i]]
+        const perMeter = 1 / (2 * Math.PI * this.#options.ellipsoid.radii.x)
+        const latitude = this.#isMercator ? mercatorLatitude(top) : Math.PI * (0.5 - top)
+        const across = perMeter / Math.max(Math.cos(latitude), 1e-3)
+        const down = this.#isMercator ? across : 2 * perMeter
+        return (east, north, detail) => {
+          const [x, y] = [left + east * across, MathUtils.clamp(top - north * down, 0, 1)]
+          let level = Math.min(z, this.#store.levelOf(detail / 2))
+          // Coarser tiles have mostly come before; where they have gone a finer one stands in.
+          while (level < z && find(this.#keyAt(level, x, y)) === undefined) level++
+          return this.#pyramid.heightAt(level, x, y, find)
+        }
       })
     }
     const missing = [...keys].filter(key => {
@@ -253,15 +259,6 @@ export class HeightTiles implements PageSource {
   /** True for a row near a pole, beyond the map or close to its end. */
   #isPolar(y: number): boolean {
     return this.#isMercator && isPolar(y)
-  }
-
-  /** Place on the map so far east and north of another [m], but beyond the map's edges. */
-  #beside(x: number, y: number, east: number, north: number): [x: number, y: number] {
-    const turn = 2 * Math.PI * this.#options.ellipsoid.radii.x
-    const latitude = this.#isMercator ? mercatorLatitude(y) : Math.PI * (0.5 - y)
-    const narrow = Math.max(Math.cos(latitude), 1e-3)
-    const tall = this.#isMercator ? narrow : 0.5
-    return [x + east / (turn * narrow), MathUtils.clamp(y - north / (turn * tall), 0, 1)]
   }
 
   /** Place on the map. */

@@ -11,20 +11,20 @@ const MOST_CELLS = 6
 /** Half of the distance over which a slope is taken [m]. */
 const SLOPE_REACH = NEAREST / 2
 
-/** Height of a place so far east and north of one of a page, without what is shorter than `detail` [m]. */
-export type HeightAbout = (place: number, east: number, north: number, detail: number) => number
+/** Height of a place so far east and north of another, without what is shorter than `detail` [m]. */
+export type HeightAbout = (east: number, north: number, detail: number) => number
 
 /**
  * Heights of a page, with the shares of the sky that the ground about its vertices leaves free: found at some of its places, linear between.
  *
  * @param heights - As many as asked for.
- * @param heightAbout - Height beside a place of the page, which has its number there.
+ * @param about - Heights about a place of the page, by its number.
  * @returns Same heights where no ground is steep enough to count: pages of continents.
  */
 export function appendSky(
   heights: Float32Array,
   { side, spacing, vertices }: PageRequest,
-  heightAbout: HeightAbout
+  about: (place: number) => HeightAbout
 ): Float32Array {
   const steps = side - 3
   const shortest = (2 * spacing * steps) / (vertices - 1)
@@ -35,10 +35,9 @@ export function appendSky(
   for (let row = 0; row <= cells; row++) {
     for (let column = 0; column <= cells; column++) {
       const at = (n: number): number => 1 + Math.round((n * steps) / cells)
-      const place = at(row) * side + at(column)
+      const heightAbout = about(at(row) * side + at(column))
       const heightAt = (east: number, north: number): number =>
         heightAbout(
-          place,
           east,
           north,
           Math.max(shortest, FINENESS * Math.hypot(east, north), FINENESS * NEAREST)
