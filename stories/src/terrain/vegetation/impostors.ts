@@ -132,8 +132,8 @@ export function createImpostors(
     .select(smoothstep(goes[0], goes[1], distance.mul(random.mul(0.2).add(0.9))).oneMinus(), 0)
   const scaled = size.mul(shown)
   const towards = (to: Vec3): Picture => pictureTowards(to, yaw, foot, scaled)
-  const seen = towards(uniforms.viewer.sub(foot).toConst() as unknown as Vec3)
-  const lit = towards(uniforms.sun as unknown as Vec3)
+  const seen = towards(uniforms.viewer.sub(foot).toConst())
+  const lit = towards(uniforms.sun)
   const at = seen.at
   material.positionNode = seen.position
   // Shadow maps see the side that the sun does.
@@ -188,5 +188,5 @@ function pictureTowards(to: Vec3, yaw: Float, foot: Vec3, size: Float): Picture 
   )
   const side = varying(sector.mod(SIDES).div(SIDES)).setInterpolation('flat')
   const at = vec2(uv().x.div(SIDES).add(side), uv().y.oneMinus()).toConst()
-  return { position, at } as unknown as Picture
+  return { position, at }
 }
