@@ -91,6 +91,8 @@ export class GridHeights implements PageSource {
   /** Line that names the data's source. */
   readonly attribution: string
   readonly #levels: readonly Raster[]
+  /** Height of each level at a place in cells of the grid whose sixteen pixels are all there; NaN beside. */
+  readonly #insideAt: readonly ((x: number, y: number) => number)[]
   readonly #west: number
   readonly #north: number
   /** True of a grid on the plane of a flat world. */
@@ -167,6 +169,15 @@ export class GridHeights implements PageSource {
       levels.push((level = halved(level)))
     }
     this.#levels = levels
+    this.#insideAt = levels.map(({ width, height, values }, level) => {
+      const shrink = 2 ** -level
+      return (x, y) => {
+        const column = x * shrink - 0.5
+        const row = y * shrink - 0.5
+        const isInside = column >= 1 && row >= 1 && column < width - 2 && row < height - 2
+        return isInside ? valueInside(values, width, column, row) : NaN
+      }
+    })
     const { low, high, right, down } = boundsOf(levels[0], this.#wraps)
     const over = OVERSHOOT * (high - low)
     this.lowest = Math.min(low - over, outside)
@@ -212,19 +223,10 @@ export class GridHeights implements PageSource {
       return (east, north, detail) => {
         const level = this.#levelOf(detail / 2)
         const [column, row] = [x + east * across, y - north * down]
-        const inside = this.#insideAt(level, column, row)
+        const inside = this.#insideAt[level](column, row)
         return Number.isNaN(inside) ? this.#sample(column, row, level, raster).value : inside
       }
     })
-  }
-
-  /** Height at a place whose sixteen pixels are all in the grid; NaN beside. @param x - As of `#sample`. */
-  #insideAt(level: number, x: number, y: number): number {
-    const { width, height, values } = this.#levels[level]
-    const shrink = 2 ** -level
-    const [column, row] = [x * shrink - 0.5, y * shrink - 0.5]
-    const isInside = column >= 1 && row >= 1 && column < width - 2 && row < height - 2
-    return isInside ? valueInside(values, width, column, row) : NaN
   }
 
   /** Level whose cells are not larger. */
@@ -247,22 +249,22 @@ export class GridHeights implements PageSource {
       extent.north >= south
     )
       return false
-    const insideAt = (i: number): number => this.#insideAt(level, places.x[i], places.y[i])
+    const inside = this.#insideAt[level]
+    const insideAt = (i: number): number => inside(places.x[i], places.y[i])
     if (fillSmooth(places, side, [shrink, shrink], insideAt, heights)) return true
-    const corners = [
-      this.#insideAt(level, extent.west, extent.north),
-      this.#insideAt(level, extent.east, extent.south)
-    ]
-    if (!corners.some(Number.isNaN)) {
+    const corners = inside(extent.west, extent.north) + inside(extent.east, extent.south)
+    if (!Number.isNaN(corners)) {
       fillInside(values, width, places, { scale: [shrink, shrink], first: [0, 0] }, heights)
       return true
     }
     for (let i = 0; i < heights.length; i++) {
-      const [x, y] = [places.x[i], places.y[i]]
-      const inside = insideAt(i)
-      if (!Number.isNaN(inside)) heights[i] = inside
-      else if (x <= west || x >= east || y <= north || y >= south) heights[i] = this.#outside
-      else heights[i] = this.#sample(x, y, level, raster).value
+      const x = places.x[i]
+      const y = places.y[i]
+      if (x <= west || x >= east || y <= north || y >= south) heights[i] = this.#outside
+      else {
+        const height = inside(x, y)
+        heights[i] = Number.isNaN(height) ? this.#sample(x, y, level, raster).value : height
+      }
     }
     return true
   }

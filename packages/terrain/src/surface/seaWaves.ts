@@ -26,8 +26,8 @@ export interface SeaWave {
 }
 
 /**
- * Domain warp of the waves: displacement along each axis of ECEF, a sine along a direction of its own, in periods in 256 m. Without it the
- * few waves that show far away make a lattice (*Terrain*, lake).
+ * Domain warp of the waves: displacement along each axis of ECEF, a sine along a direction of its own, in periods in 256 m; a symmetric
+ * matrix. Without it the few waves that show far away make a lattice (*Terrain*, lake).
  */
 export const WARPS = [
   [-2, 5, 3],
@@ -38,12 +38,8 @@ export const WARPS = [
 /** Amplitude of a displacement [m]. */
 export const WARP = 3.2
 
-/** Square of the waves' slopes over that without a warp, on average: a direction has a third of its square along each axis. */
-export const WARPED =
-  1 +
-  (WARPS.reduce((sum, [x, y, z]) => sum + x * x + y * y + z * z, 0) *
-    ((2 * Math.PI * WARP) / PERIOD) ** 2) /
-    6
+/** Mean square of the waves' slopes over that without the warp, 1 + |W|² (2π WARP / PERIOD)² / 6 with W the matrix of WARPS. */
+export const WARPED = 1.112
 
 /**
  * Waves of the sea, the longest first, from all directions of space: those along the ground count on each part of the planet.

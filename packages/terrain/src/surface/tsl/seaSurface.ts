@@ -1,4 +1,16 @@
-import { Break, Fn, If, exp, float, mix, smoothstep, uniformArray, vec3, vec4 } from 'three/tsl'
+import {
+  Break,
+  Fn,
+  If,
+  exp,
+  float,
+  mat3,
+  mix,
+  smoothstep,
+  uniformArray,
+  vec3,
+  vec4
+} from 'three/tsl'
 import { Vector4 } from 'three'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
 import { GRAVITY, PERIOD, SEA_WAVES, WARP, WARPED, WARPS, WAVE_SLOPE } from '../seaWaves'
@@ -67,6 +79,8 @@ export interface SeaPlace {
   readonly spread: Float
 }
 
+type Matrix = { mul(vector: Vec3): Vec3 }
+
 type Variable = Vec4 & { assign(value: Vec4): void; addAssign(value: Vec4): void }
 
 /**
@@ -91,8 +105,10 @@ export function seaSurface(
     const sum = vec4(0).toVar() as unknown as Variable
     const find = (): void => {
       const steepest = seaVariance.sqrt().mul(WAVE_SLOPE).toConst()
-      const [a, b, c] = WARPS.map(warp => vec3(...warp).mul((2 * Math.PI) / PERIOD))
-      const phases = vec3(offset.dot(a), offset.dot(b), offset.dot(c)).toConst()
+      const warp = mat3(...(WARPS.flat() as Parameters<typeof mat3>))
+        .mul((2 * Math.PI) / PERIOD)
+        .toConst() as unknown as Matrix
+      const phases = warp.mul(offset).toConst()
       const warped = offset.add(phases.sin().mul(WARP)).toConst() as Vec3
       // A loop: where there is no sea, the code of its waves costs time, too.
       loop('wave', SEA_WAVES.length, wave => {
@@ -116,9 +132,9 @@ export function seaSurface(
           vec4(vector.mul(tilt.div(perLength.mul(PERIOD))), kept.mul(kept).mul(WARPED / 3))
         )
       })
-      const turn = sum.xyz.mul(phases.cos()).mul(WARP).toConst() as Vec3
-      const slope = sum.xyz.add(a.mul(turn.x)).add(b.mul(turn.y)).add(c.mul(turn.z)) as Vec3
-      sum.assign(vec4(gradientAlong(slope, up), sum.w))
+      // Derivative of the warp, whose matrix is its own transpose.
+      const turn = warp.mul(sum.xyz.mul(phases.cos()).mul(WARP))
+      sum.assign(vec4(gradientAlong(sum.xyz.add(turn), up), sum.w))
     }
     // From afar no wave is kept.
     if (hasWaves) If(cover.greaterThan(0).and(footprint.lessThan(LONGEST_KEPT)), find)
