@@ -105,7 +105,7 @@ export class PageBaker {
   /**
    * Draws a page by the next {@link flush}; the renderer is left as it was.
    *
-   * @param heights - What was loaded for `request`; null for a source that is a function.
+   * @param heights - Answer of the source to `request`; null for a source that is a function.
    */
   bake(renderer: Renderer, tile: Tile, slot: number, heights: Float32Array | null = null): void {
     const row = this.#quads.add(tile, slot, 2 * spacingOf(tile, this.figure, this.#resolution))
