@@ -2,6 +2,7 @@ import {
   aerialPerspectiveFog,
   Atmosphere,
   autoExposure,
+  cascadedShadow,
   skyBackground,
   SkyLightProbe,
   SunDirectionalLight,
@@ -17,8 +18,9 @@ import { cobbles } from './cobbles'
 import type { TerrainStill } from './terrains'
 import { readPicture } from './readPicture'
 
-/** Half width of the shadow map about the camera, and distance of the light [m]. */
+/** Half width of the shadow map about the camera, distance to which trees cast shadows, and distance of the light [m]. */
 const SHADOW_EXTENT = 150
+const SHADOW_REACH = 900
 const LIGHT_DISTANCE = 2000
 
 /** The procedural planet, as the terrain's quick start draws it. The renderer has a reversed depth buffer and high precision. */
@@ -56,7 +58,7 @@ export class TerrainView {
     camera.updateMatrixWorld()
 
     const scene = new Scene()
-    const sun = (this.#sun = this.#sunAt(camera))
+    const sun = (this.#sun = this.#sunAt(camera, view.plants === true))
     scene.add(sun, sun.target, new SkyLightProbe(atmosphere), terrain)
     scene.add(...(this.#lakes = LAKES.map(lake => new Lake(terrain, lake))))
     if (view.plants) scene.add((this.#plants = new Vegetation(renderer, terrain)))
@@ -67,14 +69,16 @@ export class TerrainView {
     this.#pipeline.outputNode = this.#exposure
   }
 
-  #sunAt(camera: PerspectiveCamera): SunDirectionalLight {
+  #sunAt(camera: PerspectiveCamera, hasTrees: boolean): SunDirectionalLight {
     const sun = new SunDirectionalLight(this.#atmosphere, LIGHT_DISTANCE)
     sun.castShadow = true
-    sun.shadow.mapSize.setScalar(4096)
+    sun.shadow.mapSize.setScalar(hasTrees ? 2048 : 4096)
     const extent = SHADOW_EXTENT
     Object.assign(sun.shadow.camera, { left: -extent, right: extent, top: extent, bottom: -extent })
     Object.assign(sun.shadow.camera, { near: 1, far: 2 * LIGHT_DISTANCE })
     sun.shadow.normalBias = 0.1
+    const cascades = { cascades: 4, maxFar: SHADOW_REACH }
+    if (hasTrees) Object.assign(sun.shadow, { shadowNode: cascadedShadow(sun, cascades) })
     sun.target.position.copy(camera.position)
     return sun
   }

@@ -1,6 +1,6 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { GridHeights, Lake, Terrain } from '@welkin/terrain'
-import { Vector3 } from 'three'
+import { GridHeights, Lake, Terrain, Walker } from '@welkin/terrain'
+import { Raycaster, Vector3 } from 'three'
 import { expect, it } from 'vitest'
 
 const middle = { longitude: 8.6, latitude: 47.2 }
@@ -58,4 +58,36 @@ it('follows a world that is placed anywhere, in any units', () => {
   atmosphere.place({ ...middle, height: 400 })
   lake.onBeforeRender()
   expect(at().distanceTo(new Vector3(0, 0.006, 0))).toBeLessThan(1e-6)
+})
+
+it('is the surface that one asks for, that rays hit and that a walker swims in, as long as it is there', () => {
+  const atmosphere = new Atmosphere({ frame: 'ecef' })
+  const { ellipsoid } = atmosphere
+  const terrain = new Terrain(atmosphere, heights, { resolution: 4 })
+  const other = new Lake(terrain, { ...middle, radius: 500, level: 390 })
+  const lake = new Lake(terrain, { ...middle, radius: 2000, level: 406 })
+  const within = { longitude: middle.longitude, latitude: 47.2175 } // 1,946 m north
+  const beyond = { longitude: middle.longitude, latitude: 47.2185 }
+  const heightAt = ({ longitude, latitude }: typeof middle): number =>
+    terrain.heightAt(longitude, latitude)
+  for (const place of [middle, within]) expect(heightAt(place)).toBe(406)
+  expect(heightAt(beyond)).toBeCloseTo(380, 6)
+  expect(heightAt({ longitude: middle.longitude - 180, latitude: -middle.latitude })).toBe(380)
+
+  const eye = ellipsoid.geodeticToECEF({ ...within, height: 5000 })
+  const up = ellipsoid.surfaceNormal(eye)
+  const [hit] = new Raycaster(eye, up.clone().negate()).intersectObject(terrain)
+  expect(hit.distance).toBeCloseTo(4594, 3)
+  expect(hit.normal!.distanceTo(up)).toBeLessThan(1e-9)
+
+  const walker = new Walker(terrain).moveTo(ellipsoid.geodeticToECEF({ ...within, height: 410 }))
+  for (let i = 0; i < 20; i++) walker.update(new Vector3(), false, 1)
+  expect(walker.state).toBe('swimming')
+  expect(walker.height).toBeCloseTo(406 - 0.85 * 1.7, 3)
+
+  lake.dispose()
+  expect(heightAt(within)).toBeCloseTo(380, 6)
+  expect(heightAt(middle)).toBe(390)
+  for (const each of [other, lake]) each.dispose()
+  expect(heightAt(middle)).toBeCloseTo(380, 6)
 })

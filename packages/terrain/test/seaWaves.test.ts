@@ -1,7 +1,16 @@
 import fc from 'fast-check'
 import { expect, it } from 'vitest'
 import { seaWaves, waterFresnel } from '../src/surface/cpu/seaSurface'
-import { SEA_WAVES, seaSlopeVariance, WAVE_SHARE, WAVE_SLOPE } from '../src/surface/seaWaves'
+import {
+  PERIOD,
+  SEA_WAVES,
+  seaSlopeVariance,
+  WARP,
+  WARPED,
+  WARPS,
+  WAVE_SHARE,
+  WAVE_SLOPE
+} from '../src/surface/seaWaves'
 
 it('waves have their share of the slopes that Cox and Munk measured, wherever up is', () => {
   // 7 m/s: a standard deviation of 11°.
@@ -19,6 +28,12 @@ it('waves have their share of the slopes that Cox and Munk measured, wherever up
     expect(variance).toBeGreaterThan(0.8 * WAVE_SHARE)
     expect(variance).toBeLessThan(1.2 * WAVE_SHARE)
   }
+})
+
+it('a warp adds to the slopes what it is said to, by a matrix that is its own transpose', () => {
+  const square = WARPS.flat().reduce((sum, part) => sum + part ** 2, 0)
+  expect(1 + (square * ((2 * Math.PI * WARP) / PERIOD) ** 2) / 6).toBeCloseTo(WARPED, 3)
+  for (const i of [0, 1, 2]) for (const j of [0, 1, 2]) expect(WARPS[i][j]).toBe(WARPS[j][i])
 })
 
 it('waves repeat with the 256 m of references, and differ in length', () => {

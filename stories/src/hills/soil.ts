@@ -44,6 +44,9 @@ const CROPS: readonly Color[] = [
 ]
 const FOREST: Color = [0.026, 0.042, 0.019]
 const HEDGE: Color = [0.045, 0.065, 0.024]
+/** Dry blades among the green ones, and the shade between tufts. */
+const STRAW: Color = [0.3, 0.25, 0.11]
+const BETWEEN: Color = [0.034, 0.04, 0.018]
 
 /** Width and length of a field [m], and the angle of its rows from the x axis. */
 const FIELD = [95, 210] as const
@@ -119,12 +122,28 @@ function fields(place: Node<'vec2'>, grass: Node<'vec3'>): Node<'vec3'> {
 }
 
 /**
+ * Blades and tufts of what grows, which fade as pixels average them: straw here and there, shade between.
+ *
+ * @param noise - Noise about ±1 by its period [m].
+ */
+function grown(color: Node<'vec3'>, noise: (period: number) => Node<'float'>): Node<'vec3'> {
+  const blades = noise(0.47).toConst()
+  const tufts = noise(2.7).add(blades.mul(0.9)).toConst()
+  const dry = smoothstep(0.1, 0.75, blades.sub(noise(6.3)))
+  const low = smoothstep(-0.1, -0.75, tufts)
+  const lit = color.mul(blades.mul(0.7).add(tufts.mul(0.35)).add(1).max(0.25))
+  return mix(mix(lit, vec3(...STRAW), dry.mul(0.4)), vec3(...BETWEEN), low.mul(0.65))
+}
+
+/**
  * Material of ground with an attribute `height` [m]: fields and woods below, rock above, all with grain down to some
  * decimetres.
  */
 export function soilMaterial({ low, high, variation, isFarmed }: Soil): MeshStandardNodeMaterial {
   const material = new MeshStandardNodeMaterial({ roughness: 1 })
   const picture = createNoiseTexture()
+  // Ground before one's feet is seen at a grazing angle.
+  picture.anisotropy = 16
   material.addEventListener('dispose', () => picture.dispose())
   const place = positionWorld.xz
   // Five octaves from an eighth of the period on, about ±1; no two periods have a common multiple, and each is turned.
@@ -145,6 +164,7 @@ export function soilMaterial({ low, high, variation, isFarmed }: Soil): MeshStan
     const woods = smoothstep(0.5, 0.68, wooded).mul(smoothstep(20, 45, height))
     color = mix(color, vec3(...FOREST).mul(fine.mul(0.4).add(1)), woods)
   }
+  if (isFarmed) color = grown(color, noise)
   color = mix(color, vec3(...high), smoothstep(480, 1000, height))
   // Cliffs.
   if (isFarmed) color = mix(color, vec3(...high), smoothstep(0.2, 0.34, normalWorld.y.oneMinus()))

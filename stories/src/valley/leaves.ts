@@ -22,13 +22,13 @@ import type { Node, NodeMaterial } from 'three/webgpu'
 import { randomSequence } from '../random'
 
 /** Texels along an edge of each of the two halves of the picture. */
-const SIZE = 128
+const SIZE = 256
 
 /** Numbers of channels of a texel. */
 const CHANNELS = 4
 
 /** Leaves of a spray, and needles along a twig and its side twigs. */
-const LEAVES = 90
+const LEAVES = 330
 const SIDE_TWIGS = 32
 
 /** Branches of a spray without leaves, and twigs of each. */
@@ -99,17 +99,17 @@ function bareTwigs(bytes: Bytes, random: () => number): void {
       SIZE * (x + 0.5 * length * Math.cos(angle)),
       SIZE * (y + 0.5 * length * Math.sin(angle))
     ] as const
-    ellipse(bytes, 0, middle, [0.5 * SIZE * length, width], angle, 1, BARE_TWIGS)
+    ellipse(bytes, 0, middle, [0.5 * SIZE * length, SIZE * width], angle, 1, BARE_TWIGS)
   }
   for (let i = 0; i < BRANCHES; i++) {
     const angle = (2 * Math.PI * (i + 0.7 * random())) / BRANCHES
     const reach = 0.36 + 0.13 * random()
-    line(0.5, 0.5, angle, reach, 1.3)
+    line(0.5, 0.5, angle, reach, 0.01)
     for (let j = 1; j <= TWIGS; j++) {
       const along = (reach * (j + random())) / (TWIGS + 1)
       const place = [0.5 + along * Math.cos(angle), 0.5 + along * Math.sin(angle)] as const
       const aside = angle + (j % 2 === 0 ? 1 : -1) * (0.5 + 0.5 * random())
-      line(...place, aside, (0.1 + 0.08 * random()) * (1.25 - along / reach), 1)
+      line(...place, aside, (0.1 + 0.08 * random()) * (1.25 - along / reach), 0.008)
     }
   }
 }
@@ -127,7 +127,7 @@ function createLeafTexture(): DataTexture {
     // Fewer towards the edge: sprays have no outline of their own.
     if (random() < 1.6 * radius - 0.25) continue
     const place = [0.5 + radius * Math.cos(angle), 0.5 + radius * Math.sin(angle)] as const
-    const size = SIZE * (0.045 + 0.035 * random())
+    const size = SIZE * (0.024 + 0.018 * random())
     const brightness = 0.42 + 0.5 * (i / LEAVES) + 0.12 * random()
     const at = [SIZE * place[0], SIZE * place[1]] as const
     ellipse(bytes, 0, at, [size, 0.55 * size], angle + 1.6 * random(), brightness)

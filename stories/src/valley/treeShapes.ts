@@ -11,25 +11,25 @@ import { mergeGeometries, mergeVertices } from 'three/addons/utils/BufferGeometr
 import { randomSequence } from '../random'
 
 /** Colour, linear sRGB. */
-type Color = readonly [number, number, number]
+export type Color = readonly [number, number, number]
 
 /** Colours of needles, leaves and bark. */
 const NEEDLES = [0.03, 0.048, 0.02] as const
-const LEAVES = [0.055, 0.084, 0.027] as const
-const BARK = [0.056, 0.048, 0.04] as const
+export const LEAVES = [0.055, 0.084, 0.027] as const
+export const BARK = [0.056, 0.048, 0.04] as const
 
 /** Leaves in the shade of a crown: with next to no blue, by which they have no gaps. */
-const SHADE = [0.021, 0.034, 0.002] as const
+export const SHADE = [0.021, 0.034, 0.002] as const
 
 /** Golden angle, by which branches turn about a trunk [rad]. */
-const GOLDEN = 2.4
+export const GOLDEN = 2.4
 
 /**
  * Paints a part of a tree, darker where leaves shade each other: below.
  *
  * @param shade - Brightness at its foot over that at its top.
  */
-function painted(geometry: BufferGeometry, [r, g, b]: Color, shade = 1): BufferGeometry {
+export function painted(geometry: BufferGeometry, [r, g, b]: Color, shade = 1): BufferGeometry {
   geometry.computeBoundingBox()
   const { min, max } = geometry.boundingBox!
   const { position } = geometry.attributes
@@ -42,7 +42,7 @@ function painted(geometry: BufferGeometry, [r, g, b]: Color, shade = 1): BufferG
 }
 
 /** A ball of few faces, lit as round. */
-function ball(size: number): BufferGeometry {
+export function ball(size: number): BufferGeometry {
   const faces = new IcosahedronGeometry(size, 0)
   faces.deleteAttribute('uv')
   faces.deleteAttribute('normal')
@@ -60,7 +60,12 @@ function ball(size: number): BufferGeometry {
 const FEW = 8
 
 /** A trunk up to a height, of some radius at its foot [m]. */
-const trunk = (height: number, radius: number, color: Color = BARK, sides = 5): BufferGeometry =>
+export const trunk = (
+  height: number,
+  radius: number,
+  color: Color = BARK,
+  sides = 5
+): BufferGeometry =>
   painted(
     new CylinderGeometry(0.25 * radius, radius, height, sides, 1, true).translate(0, height / 2, 0),
     color

@@ -9,9 +9,10 @@ import {
 } from '@welkin/geo'
 import type { HeightSample } from '../heights/HeightSource'
 import type { PageRequest, PageSource } from '../pages/PageSource'
+import { appendSky } from './appendSky'
 import { geographicGradient, geographicPlace, type GeographicPlace } from './geographic'
-import { fillSmooth, pagePlaces, type Extent } from './pagePlaces'
-import { fillHoles, halved, type Raster } from './Raster'
+import { fillSmooth, pagePlaces, type Extent, type PagePlaces } from './pagePlaces'
+import { boundsOf, fillHoles, halved, type Raster } from './Raster'
 import {
   fillInside,
   OVERSHOOT,
@@ -90,6 +91,8 @@ export class GridHeights implements PageSource {
   /** Line that names the data's source. */
   readonly attribution: string
   readonly #levels: readonly Raster[]
+  /** Height of each level at a place in cells of the grid whose sixteen pixels are all there; NaN beside. */
+  readonly #insideAt: readonly ((x: number, y: number) => number)[]
   readonly #west: number
   readonly #north: number
   /** True of a grid on the plane of a flat world. */
@@ -166,6 +169,15 @@ export class GridHeights implements PageSource {
       levels.push((level = halved(level)))
     }
     this.#levels = levels
+    this.#insideAt = levels.map(({ width, height, values }, level) => {
+      const shrink = 2 ** -level
+      return (x, y) => {
+        const column = x * shrink - 0.5
+        const row = y * shrink - 0.5
+        const isInside = column >= 1 && row >= 1 && column < width - 2 && row < height - 2
+        return isInside ? valueInside(values, width, column, row) : NaN
+      }
+    })
     const { low, high, right, down } = boundsOf(levels[0], this.#wraps)
     const over = OVERSHOOT * (high - low)
     this.lowest = Math.min(low - over, outside)
@@ -199,16 +211,35 @@ export class GridHeights implements PageSource {
   }
 
   loadHeights(request: PageRequest): Float32Array {
-    const { side, spacing } = request
     const places = pagePlaces(request, (at, target) => this.#cellOf(at, target), this.#turn)
-    const level = MathUtils.clamp(
-      Math.floor(Math.log2(spacing / this.#cell)),
-      0,
-      this.#levels.length - 1
-    )
-    const { width, height, values } = this.#levels[level]
+    const heights = new Float32Array(request.side ** 2)
+    if (!this.#fill(heights, request, places)) return heights.fill(this.#outside)
+    const radius = this.#isFlat ? 1 : this.#radii.x
+    return appendSky(heights, request, i => {
+      const [x, y] = [places.x[i], places.y[i]]
+      const parallel = this.#isFlat ? 1 : Math.max(Math.cos(this.#north - y * this.#stepY), 1e-3)
+      const across = 1 / (this.#stepX * radius * parallel)
+      const down = 1 / (this.#stepY * radius)
+      return (east, north, detail) => {
+        const level = this.#levelOf(detail / 2)
+        const [column, row] = [x + east * across, y - north * down]
+        const inside = this.#insideAt[level](column, row)
+        return Number.isNaN(inside) ? this.#sample(column, row, level, raster).value : inside
+      }
+    })
+  }
+
+  /** Level whose cells are not larger. */
+  #levelOf(spacing: number): number {
+    const level = Math.floor(Math.log2(spacing / this.#cell))
+    return MathUtils.clamp(level, 0, this.#levels.length - 1)
+  }
+
+  /** Fills the heights of a page. @returns False if all of it is far outside, and nothing has been filled. */
+  #fill(heights: Float32Array, { side, spacing }: PageRequest, places: PagePlaces): boolean {
+    const level = this.#levelOf(spacing)
+    const { width, values } = this.#levels[level]
     const shrink = 2 ** -level
-    const heights = new Float32Array(side * side)
     const { extent } = places
     const { west, east, north, south } = this.#boundsIn(extent)
     if (
@@ -217,26 +248,25 @@ export class GridHeights implements PageSource {
       extent.south <= north ||
       extent.north >= south
     )
-      return heights.fill(this.#outside)
-    const pixel = (cells: number): number => cells * shrink - 0.5
-    const isInside = (x: number, y: number): boolean =>
-      pixel(x) >= 1 && pixel(y) >= 1 && pixel(x) < width - 2 && pixel(y) < height - 2
-    const insideAt = (i: number): number => {
-      const [x, y] = [places.x[i], places.y[i]]
-      return isInside(x, y) ? valueInside(values, width, pixel(x), pixel(y)) : NaN
-    }
-    if (fillSmooth(places, side, [shrink, shrink], insideAt, heights)) return heights
-    if (isInside(extent.west, extent.north) && isInside(extent.east, extent.south)) {
-      return fillInside(values, width, places, { scale: [shrink, shrink], first: [0, 0] }, heights)
+      return false
+    const inside = this.#insideAt[level]
+    const insideAt = (i: number): number => inside(places.x[i], places.y[i])
+    if (fillSmooth(places, side, [shrink, shrink], insideAt, heights)) return true
+    const corners = inside(extent.west, extent.north) + inside(extent.east, extent.south)
+    if (!Number.isNaN(corners)) {
+      fillInside(values, width, places, { scale: [shrink, shrink], first: [0, 0] }, heights)
+      return true
     }
     for (let i = 0; i < heights.length; i++) {
-      const [x, y] = [places.x[i], places.y[i]]
-      const inside = insideAt(i)
-      if (!Number.isNaN(inside)) heights[i] = inside
-      else if (x <= west || x >= east || y <= north || y >= south) heights[i] = this.#outside
-      else heights[i] = this.#sample(x, y, level, raster).value
+      const x = places.x[i]
+      const y = places.y[i]
+      if (x <= west || x >= east || y <= north || y >= south) heights[i] = this.#outside
+      else {
+        const height = inside(x, y)
+        heights[i] = Number.isNaN(height) ? this.#sample(x, y, level, raster).value : height
+      }
     }
-    return heights
+    return true
   }
 
   /** Bounds, among places of an extent, beyond which `outside` is the height [cells]. */
@@ -315,22 +345,4 @@ export class GridHeights implements PageSource {
     target.value = this.#outside + over * kept
     return target
   }
-}
-
-/**
- * Least and largest values, and largest differences of neighbours.
- *
- * @param wraps - True if the first column follows the last.
- */
-function boundsOf({ width, height, values }: Raster, wraps: boolean) {
-  let [low, high, right, down] = [Infinity, -Infinity, 0, 0]
-  for (let i = 0; i < values.length; i++) {
-    low = Math.min(low, values[i])
-    high = Math.max(high, values[i])
-    const isLast = (i + 1) % width === 0
-    const next = isLast ? i + 1 - width : i + 1
-    if (!isLast || wraps) right = Math.max(right, Math.abs(values[next] - values[i]))
-    if (i < (height - 1) * width) down = Math.max(down, Math.abs(values[i + width] - values[i]))
-  }
-  return { low, high, right, down }
 }

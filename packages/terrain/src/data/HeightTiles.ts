@@ -4,6 +4,7 @@ import { checkPositive } from '@welkin/geo'
 import type { HeightSample } from '../heights/HeightSource'
 import { levelOf } from '../heights/sampleGround'
 import type { PageRequest, PageSource } from '../pages/PageSource'
+import { appendSky } from './appendSky'
 import {
   geographicGradient,
   geographicPlace,
@@ -168,11 +169,8 @@ export class HeightTiles implements PageSource {
     const x = mercatorX(place.longitude)
     const y = this.#rowOf(place.latitude)
     let z = this.maxZoom
-    const { wide } = this.#store
-    const keyAt = (): number =>
-      tileKey(z, Math.floor(x * wide * 2 ** z), Math.floor(y * 2 ** z), wide)
-    while (z > this.minZoom && this.#store.peek(keyAt()) === undefined) z--
-    this.#store.get(keyAt())
+    while (z > this.minZoom && this.#store.peek(this.#keyAt(z, x, y)) === undefined) z--
+    this.#store.get(this.#keyAt(z, x, y))
     // A new function each time: the tiles that were found before may be others now.
     this.#sample(z, x, y, key => this.#store.peek(key), near)
     target.height = near.value
@@ -193,8 +191,7 @@ export class HeightTiles implements PageSource {
       pagePlaces(request, (at, target) => this.#project(at, target), 1)
     const first = placesOf()
     const keys = this.#keysOf(z, first, side)
-    const fill = (places: PagePlaces): Float32Array => {
-      const heights = new Float32Array(side * side)
+    const fillHeights = (places: PagePlaces, heights: Float32Array): Float32Array => {
       const between = this.#pyramid.heightsBetween(z, places, find)
       const isWhole = [...keys].every(key => find(key)?.hasHoles === false)
       const scale = this.#pyramid.size * 2 ** z
@@ -213,6 +210,23 @@ export class HeightTiles implements PageSource {
       }
       return heights
     }
+    const fill = (places: PagePlaces): Float32Array => {
+      const heights = fillHeights(places, new Float32Array(side * side))
+      return appendSky(heights, request, i => {
+        const [left, top] = [places.x[i], places.y[i]]
+        const perMeter = 1 / (2 * Math.PI * this.#options.ellipsoid.radii.x)
+        const latitude = this.#isMercator ? mercatorLatitude(top) : Math.PI * (0.5 - top)
+        const across = perMeter / Math.max(Math.cos(latitude), 1e-3)
+        const down = this.#isMercator ? across : 2 * perMeter
+        return (east, north, detail) => {
+          const [x, y] = [left + east * across, MathUtils.clamp(top - north * down, 0, 1)]
+          let level = Math.min(z, this.#store.levelOf(detail / 2))
+          // Coarser tiles have mostly come before; where they have gone a finer one stands in.
+          while (level < z && find(this.#keyAt(level, x, y)) === undefined) level++
+          return this.#pyramid.heightAt(level, x, y, find)
+        }
+      })
+    }
     const missing = [...keys].filter(key => {
       const tile = this.#store.get(key)
       if (tile !== undefined) held.set(key, tile)
@@ -230,6 +244,12 @@ export class HeightTiles implements PageSource {
   dispose(): void {
     this.#store.clear()
     this.#pyramid.forget()
+  }
+
+  /** Key of the tile of a level at a place of the map. */
+  #keyAt(z: number, x: number, y: number): number {
+    const { wide } = this.#store
+    return tileKey(z, Math.floor(x * wide * 2 ** z), Math.floor(y * 2 ** z), wide)
   }
 
   #rowOf(latitude: number): number {

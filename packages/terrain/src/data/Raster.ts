@@ -62,3 +62,21 @@ export function fillHoles(raster: Raster, otherwise: number): Raster {
   }
   return raster
 }
+
+/**
+ * Least and largest values, and largest differences of neighbours.
+ *
+ * @param wraps - True if the first column follows the last.
+ */
+export function boundsOf({ width, height, values }: Raster, wraps: boolean) {
+  let [low, high, right, down] = [Infinity, -Infinity, 0, 0]
+  for (let i = 0; i < values.length; i++) {
+    low = Math.min(low, values[i])
+    high = Math.max(high, values[i])
+    const isLast = (i + 1) % width === 0
+    const next = isLast ? i + 1 - width : i + 1
+    if (!isLast || wraps) right = Math.max(right, Math.abs(values[next] - values[i]))
+    if (i < (height - 1) * width) down = Math.max(down, Math.abs(values[i + width] - values[i]))
+  }
+  return { low, high, right, down }
+}

@@ -61,6 +61,19 @@ export class TilePyramid {
     return target
   }
 
+  /** Height at a place, linear between pixels: where no slope is asked for, of coarse levels. As {@link sample}. */
+  heightAt(z: number, x: number, y: number, find: FindTile): number {
+    this.#begin(find)
+    const scale = this.size * 2 ** z
+    const column = x * this.wide * scale - 0.5
+    const row = y * scale - 0.5
+    const [i, j] = [Math.floor(column), Math.floor(row)]
+    const right = column - i
+    const upper = this.#pixelAt(z, i, j) * (1 - right) + this.#pixelAt(z, i + 1, j) * right
+    const lower = this.#pixelAt(z, i, j + 1) * (1 - right) + this.#pixelAt(z, i + 1, j + 1) * right
+    return upper + (row - j) * (lower - upper)
+  }
+
   /**
    * Pixels about all places of a page, and a function of the height between them: those of a tile if it has all of them, else a copy. Null if there were
    * more than {@link MOST_PIXELS} times as many as places, as across the antimeridian.

@@ -162,7 +162,7 @@ export class HeightPages {
     const { lowest, highest } = this.#source
     const spacing = spacingOf(tile, this.#baker.figure, this.atlas.surfaceSide - 1)
     const margin = this.#source.variation(MARGIN_STEPS * spacing)
-    const [least, most] = boundsOf(heights)
+    const [least, most] = boundsOf(heights.subarray(0, this.#length))
     tile.lowest = Math.min(Math.max(least - margin, lowest), least)
     tile.highest = Math.max(Math.min(most + margin, highest), most)
   }
@@ -196,7 +196,8 @@ export class HeightPages {
   /** @throws If they cannot be drawn. */
   #checked(heights: unknown): Float32Array {
     const length = heights instanceof Float32Array ? heights.length : heights
-    if (length !== this.#length) this.#wrong = { answer: length }
+    const more = Number(length) - this.#length
+    if (more !== 0 && more !== this.atlas.heightSide ** 2) this.#wrong = { answer: length }
     // Caught where they were asked for, which is done again later.
     else if (boundsOf(heights as Float32Array).every(Number.isFinite))
       return heights as Float32Array

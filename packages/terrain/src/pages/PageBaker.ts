@@ -60,8 +60,10 @@ export class PageBaker {
       this.#image = { texture, quads: images }
     }
     if (isPageSource(source)) {
-      const data = new Float32Array(MOST * side ** 2)
-      const texture = new DataArrayTexture(data, side, side, MOST)
+      // Below the heights are the vertices' shares of the sky.
+      const rows = side + Math.ceil(heightSide ** 2 / side)
+      const data = new Float32Array(MOST * side * rows)
+      const texture = new DataArrayTexture(data, side, rows, MOST)
       texture.name = 'Welkin.Terrain.loaded'
       texture.format = RedFormat
       texture.type = FloatType
@@ -89,6 +91,7 @@ export class PageBaker {
       x,
       y,
       side: steps + 3,
+      vertices: this.#resolution + 1,
       spacing: spacingOf(tile, figure, steps),
       placeOf(column, row, target) {
         const across = ((2 * (column - 1)) / steps - 1) * extent
@@ -102,14 +105,17 @@ export class PageBaker {
   /**
    * Draws a page by the next {@link flush}; the renderer is left as it was.
    *
-   * @param heights - Loaded heights, as many as `request` asked for; null for a source that is a function.
+   * @param heights - Answer of the source to `request`; null for a source that is a function.
    */
   bake(renderer: Renderer, tile: Tile, slot: number, heights: Float32Array | null = null): void {
     const row = this.#quads.add(tile, slot, 2 * spacingOf(tile, this.figure, this.#resolution))
     this.#readback?.add(tile)
     const loaded = this.#loaded
     if (loaded !== null && heights !== null) {
-      loaded.image.data!.set(heights, row * heights.length)
+      const { data, width, height } = loaded.image
+      const first = row * width * height
+      // All of the sky is seen where nothing else is known.
+      data!.fill(1, first + width ** 2, first + width * height).set(heights, first)
       loaded.addLayerUpdate(row)
       loaded.needsUpdate = true
     }

@@ -15,6 +15,8 @@ export interface PageRequest {
   readonly side: number
   /** Distance between neighbours, at most [m]. */
   readonly spacing: number
+  /** Number of vertices along an edge of the tile. */
+  readonly vertices: number
 
   /**
    * Place of a height on the ellipsoid.
@@ -34,7 +36,8 @@ export interface PageSource extends GroundBounds {
   readonly seed?: number
 
   /**
-   * Heights of a page [m], row by row, `side`² of them. Neighbouring tiles must get the same heights along their common edge.
+   * Heights of a page [m], row by row, `side`² of them. Neighbouring tiles must get the same heights along their common edge. After them may
+   * come `vertices`² shares of the sky, in (0, 1], that the ground about a vertex leaves free, over what its own slope leaves [–].
    *
    * @param signal - Aborted when nobody needs the page any more.
    * @returns The heights, or a promise of them. If it is rejected, or a height is not finite, they are asked for again later; anything

@@ -10,7 +10,7 @@ import { seaSlopeVariance } from '../surface/seaWaves'
 import type { TerrainUniforms } from '../TerrainUniforms'
 import { figureOf, isFlat, worldToGround } from '../tiles/cpu/figure'
 import { distanceToGround } from './distanceToGround'
-import { groundNormal } from './Ground'
+import { groundNormal, waterLevel, type GroundWater } from './Ground'
 import { raycastGround } from './raycastGround'
 
 /** Level of "no sea", below all ground [m]. */
@@ -26,6 +26,8 @@ export abstract class GroundMesh extends Mesh<InstancedBufferGeometry, MeshStand
   declare readonly atmosphere: Atmosphere
   /** Heights of the ground; shared, not owned. */
   declare readonly source: HeightSource | PageSource
+  /** Lakes on it: each adds itself, and leaves when it is disposed of. */
+  readonly lakes: GroundWater[] = []
 
   readonly #sea: Pick<TerrainUniforms, 'seaLevel' | 'seaVariance' | 'waveTime'>
   #seaLevel = 0
@@ -78,7 +80,7 @@ export abstract class GroundMesh extends Mesh<InstancedBufferGeometry, MeshStand
   }
 
   /**
-   * Height of the ground, or of the sea over it, above the ellipsoid: that of the surface as drawn about a
+   * Height of the ground, or of the sea or a lake over it, above the ellipsoid: that of the surface as drawn about a
    * viewer who stands there [m].
    *
    * @param longitude - East of the prime meridian [°].
@@ -137,11 +139,11 @@ export abstract class GroundMesh extends Mesh<InstancedBufferGeometry, MeshStand
 
   /** Height of the surface at a point of the ellipsoid [m]. */
   protected surfaceAt(position: Vector3): number {
-    return Math.max(sampleGround(this.source, position, sample).height, this.seaLevel)
+    return Math.max(sampleGround(this.source, position, sample).height, waterLevel(this, position))
   }
 
   /**
-   * Point where a ray enters the ground or the sea, with all detail that the source has.
+   * Point where a ray enters the ground, the sea or a lake, with all detail that the source has.
    *
    * @param originECEF - Start of the ray [m]; in a flat world along the world's axes, as is the result.
    * @param directionECEF - Any length but 0.
@@ -161,7 +163,7 @@ export abstract class GroundMesh extends Mesh<InstancedBufferGeometry, MeshStand
   }
 
   /**
-   * Hit of a ray of three's `Raycaster` on the ground or the sea: to 1 mm, wherever the camera is. Its normal is in the
+   * Hit of a ray of three's `Raycaster` on the ground, the sea or a lake: to 1 mm, wherever the camera is. Its normal is in the
    * terrain's own axes, those of ECEF; it has no face.
    */
   override raycast(raycaster: Raycaster, intersects: Intersection[]): void {

@@ -2,7 +2,7 @@ import { Vector3 } from 'three'
 import type { HeightSample } from '../heights/HeightSource'
 import { sampleGround } from '../heights/sampleGround'
 import { figureOf, isFlat } from '../tiles/cpu/figure'
-import type { Ground } from './Ground'
+import { waterLevel, type Ground } from './Ground'
 
 /** Precision of a hit along the ray [m]. */
 const PRECISION = 1e-4
@@ -33,7 +33,7 @@ interface Probe {
 
 /** Height, clearance and inclination of a ray at a distance [m]. */
 function probe(
-  { atmosphere, source, seaLevel }: Ground,
+  ground: Ground,
   highest: number,
   origin: Vector3,
   direction: Vector3,
@@ -41,7 +41,7 @@ function probe(
   target: Probe
 ): Probe {
   position.copy(origin).addScaledVector(direction, distance)
-  const figure = figureOf(atmosphere)
+  const figure = figureOf(ground.atmosphere)
   const { radii } = figure
   figure.surfaceNormal(position, up)
   const support = isFlat(figure) ? 0 : Math.hypot(radii.x * up.x, radii.y * up.y, radii.z * up.z)
@@ -49,13 +49,13 @@ function probe(
   target.cosUp = direction.dot(up)
   target.clearance = target.height - highest
   if (target.clearance > 0) return target
-  sampleGround(source, position.addScaledVector(up, -target.height), sample)
-  target.clearance = target.height - Math.max(sample.height, seaLevel)
+  sampleGround(ground.source, position.addScaledVector(up, -target.height), sample)
+  target.clearance = target.height - Math.max(sample.height, waterLevel(ground, position))
   return target
 }
 
 /**
- * Distance along a ray to where it enters the ground or the sea. A ray that begins below the surface leaves it first.
+ * Distance along a ray to where it enters the ground or water. A ray that begins below the surface leaves it first.
  *
  * Height above the ellipsoid is convex along a ray, because the ellipsoid is: a tangent of it stays below, so that Newton's
  * method comes down to the highest ground from outside without overshooting. From there steps are as long as
@@ -75,9 +75,9 @@ export function distanceToGround(
   near: number,
   far: number
 ): number | null {
-  const { source, seaLevel } = ground
+  const { source, seaLevel, lakes = [] } = ground
   const { minimumRadius, maximumRadius } = figureOf(ground.atmosphere)
-  const highest = Math.max(source.highest, seaLevel)
+  const highest = Math.max(source.highest, seaLevel, ...lakes.map(({ level }) => level))
   const lowest = Math.max(source.lowest, seaLevel)
   // Smallest radius of curvature of the ellipsoid: up turns no faster.
   const curvature = maximumRadius / minimumRadius ** 2

@@ -68,6 +68,7 @@ export class Lake extends Mesh<BufferGeometry, GroundMaterial> {
   readonly level: number
   /** Middle of the surface, ECEF [m]. */
   readonly center: Vector3
+  readonly #radius: number
   readonly #variance = numberUniform()
   readonly #seconds = numberUniform()
   #version = -1
@@ -89,6 +90,8 @@ export class Lake extends Mesh<BufferGeometry, GroundMaterial> {
     this.terrain = terrain
     this.level = level
     this.center = center
+    this.#radius = radius
+    terrain.lakes.push(this)
     this.name = 'Lake'
     this.frustumCulled = false
     this.receiveShadow = terrain.receiveShadow
@@ -153,12 +156,24 @@ export class Lake extends Mesh<BufferGeometry, GroundMaterial> {
     depth.needsUpdate = true
   }
 
+  /** True within its circle. @param subpoint - On the ellipsoid, ECEF [m]. */
+  covers(subpoint: Vector3): boolean {
+    const { center } = this
+    if (subpoint.dot(center) < 0) return false
+    this.terrain.atmosphere.ellipsoid.surfaceNormal(center, up)
+    // Along the plane that touches the middle, as the disc was made.
+    const away = place.subVectors(subpoint, center)
+    return away.addScaledVector(up, -away.dot(up)).length() <= this.#radius
+  }
+
   override onBeforeRender(): void {
     this.#update()
   }
 
-  /** Frees geometry and material; the terrain is shared. */
+  /** Frees geometry and material and leaves the terrain, which is shared. */
   override dispose(): void {
+    const { lakes } = this.terrain
+    lakes.splice(lakes.indexOf(this), lakes.includes(this) ? 1 : 0)
     this.geometry.dispose()
     this.material.dispose()
   }

@@ -4,7 +4,7 @@ export const PERIOD = 256
 /** Longest and shortest wave [m], and their number. */
 const LONGEST = 14
 const SHORTEST = 0.45
-const COUNT = 14
+const COUNT = 24
 
 /** Part of the sea's slopes that these waves have; the rest are ripples that no pixel shows. */
 export const WAVE_SHARE = 0.5
@@ -26,7 +26,23 @@ export interface SeaWave {
 }
 
 /**
- * Waves of the sea, from all directions of space: those along the ground count on each part of the planet.
+ * Domain warp of the waves: displacement along each axis of ECEF, a sine along a direction of its own, in periods in 256 m; a symmetric
+ * matrix. Without it the few waves that show far away make a lattice (*Terrain*, lake).
+ */
+export const WARPS = [
+  [-2, 5, 3],
+  [5, 1, -4],
+  [3, -4, 2]
+] as const
+
+/** Amplitude of a displacement [m]. */
+export const WARP = 3.2
+
+/** Mean square of the waves' slopes over that without the warp, 1 + |W|² (2π WARP / PERIOD)² / 6 with W the matrix of WARPS. */
+export const WARPED = 1.112
+
+/**
+ * Waves of the sea, the longest first, from all directions of space: those along the ground count on each part of the planet.
  *
  * Frequencies are those of gravity waves in deep water, f = √(g / 2πλ).
  */
@@ -40,13 +56,13 @@ export const SEA_WAVES: readonly SeaWave[] = Array.from({ length: COUNT }, (_, i
   const vector = unit.map(part => Math.round((part * PERIOD) / wanted)) as [number, number, number]
   const length = PERIOD / Math.hypot(...vector)
   return { vector, length, frequency: Math.sqrt(GRAVITY / (2 * Math.PI * length)) }
-})
+}).sort((a, b) => b.length - a.length)
 
 /**
  * Steepest slope of each wave, over the square root of the sea's variance of slopes: a wave from anywhere has two thirds of its square along the
  * ground, and half of that on average.
  */
-export const WAVE_SLOPE = Math.sqrt((3 * WAVE_SHARE) / COUNT)
+export const WAVE_SLOPE = Math.sqrt((3 * WAVE_SHARE) / COUNT / WARPED)
 
 /**
  * Mean square slope of the sea's surface in a wind.

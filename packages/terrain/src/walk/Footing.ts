@@ -1,7 +1,7 @@
 import { Vector3 } from 'three'
 import type { HeightSample } from '../heights/HeightSource'
 import { sampleGround } from '../heights/sampleGround'
-import type { Ground } from '../rays/Ground'
+import { waterLevel, type Ground } from '../rays/Ground'
 import { figureOf } from '../tiles/cpu/figure'
 
 /** Distance about the feet over which the slope is taken: stones do not stop them [m]. */
@@ -12,7 +12,7 @@ const first = new Vector3()
 const second = new Vector3()
 const place = new Vector3()
 
-/** Ground under a pair of feet, without the sea. */
+/** Ground under a pair of feet, and the water over it. */
 export class Footing {
   /** Point of the ellipsoid below, ECEF [m]. */
   readonly subpoint = new Vector3()
@@ -22,6 +22,8 @@ export class Footing {
   readonly gradient = new Vector3()
   /** Height of the ground above the ellipsoid [m]. */
   floor = 0
+  /** Surface of the sea or a lake there; −Infinity for none [m]. */
+  water = 0
   readonly #ground: Ground
 
   constructor(ground: Ground) {
@@ -40,6 +42,7 @@ export class Footing {
     figure.footPoint(positionECEF, subpoint)
     figure.surfaceNormal(subpoint, up)
     this.floor = this.#heightAt(subpoint)
+    this.water = waterLevel(this.#ground, subpoint)
     first
       .set(Math.abs(up.z) < 0.9 ? 0 : 1, 0, Math.abs(up.z) < 0.9 ? 1 : 0)
       .cross(up)
@@ -54,11 +57,12 @@ export class Footing {
     return this
   }
 
-  copy({ subpoint, up, gradient, floor }: Footing): this {
+  copy({ subpoint, up, gradient, floor, water }: Footing): this {
     this.subpoint.copy(subpoint)
     this.up.copy(up)
     this.gradient.copy(gradient)
     this.floor = floor
+    this.water = water
     return this
   }
 

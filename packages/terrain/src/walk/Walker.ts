@@ -237,13 +237,13 @@ export class Walker {
 
   /** Height of the feet of someone afloat [m]. */
   get #floatHeight(): number {
-    return this.ground.seaLevel - AFLOAT * this.#eyeHeight
+    return this.#here.water - AFLOAT * this.#eyeHeight
   }
 
   /** Finds the state from the height over the ground; on it there is no speed upward. */
   #settle(): void {
     const { floor, slope } = this.#here
-    const isDeep = this.#floatHeight > floor && this.#height < this.ground.seaLevel
+    const isDeep = this.#floatHeight > floor && this.#height < this.#here.water
     if (isDeep) this.#state = 'swimming'
     else if (this.#height > floor) this.#state = 'falling'
     else {
@@ -276,7 +276,7 @@ export class Walker {
     const { gradient } = this.#here
     const velocity = this.levelVelocity
     const isFree = this.#state === 'falling'
-    const depth = (this.ground.seaLevel - this.#height) / (AFLOAT * this.#eyeHeight)
+    const depth = (this.#here.water - this.#height) / (AFLOAT * this.#eyeHeight)
     const wading = 1 - (1 - SWIMMING) * Math.min(Math.max(depth, 0), 1)
     const length = wish.length()
     const climb = this.#state === 'standing' && length > 0 ? wish.dot(gradient) / length : 0

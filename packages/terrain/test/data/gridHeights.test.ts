@@ -209,7 +209,7 @@ describe('a grid', () => {
     const numbers = Array.from({ length: width * height }, (_, i) => 100 * ((i % width) % 7))
     const around = { west: -180, east: 180, south: -90, north: 90 }
     const world = new GridHeights(numbers, { width, height, ...around })
-    const page = { face: 1, level: 0, x: 0, y: 0, side: 2 }
+    const page = { face: 1, level: 0, x: 0, y: 0, side: 2, vertices: 5 }
     for (const spacing of [1e5, 7e5, 1.3e6, 5.3e6, 1e7]) {
       const heights = world.loadHeights({
         ...page,

@@ -16,6 +16,7 @@ export function pageOf(face: number, level: number, x: number, y: number, steps 
     x,
     y,
     side: steps + 3,
+    vertices: 5,
     spacing: (2 * extent * earth.maximumRadius) / steps,
     placeOf(column, row, target) {
       const across = x + ((2 * (column - 1)) / steps - 1) * extent

@@ -1,4 +1,4 @@
-import { groundSharesAt, type GroundShares, type Terrain } from '@welkin/terrain'
+import { groundSharesAt, type GroundShares, type GroundWater, type Terrain } from '@welkin/terrain'
 import { Vector3, type Matrix4 } from 'three'
 
 /** Ground of a cell. */
@@ -6,6 +6,8 @@ export interface CellGround {
   /** Height of its middle over the ellipsoid, and over the plane of the plants' frame [m]. */
   readonly height: number
   readonly middle: number
+  /** Surface of a lake over that plane; −Infinity where there is none [m]. */
+  readonly water: number
   /** Materials of the ground in its middle. */
   readonly shares: GroundShares
   /** Heights over the frame's plane, rows of `steps` + 1; null before any is needed [m]. */
@@ -13,6 +15,7 @@ export interface CellGround {
 }
 
 const place = new Vector3()
+const subpoint = new Vector3()
 
 /** Ground of square cells, found once for all plants that stand on them. */
 export class CellGrounds {
@@ -43,9 +46,11 @@ export class CellGrounds {
     const [x, z] = [(u + 0.5) * this.side, (v + 0.5) * this.side]
     place.set(x, 0, z).applyMatrix4(toWorld)
     const height = terrain.heightBelow(place)
+    const lake = lakeAt(terrain, place)
     const ground: CellGround = {
       height,
       middle: height - bend(terrain, x, z),
+      water: (lake?.level ?? -Infinity) - bend(terrain, x, z),
       shares: groundSharesAt(terrain, place),
       heights: null
     }
@@ -73,6 +78,14 @@ export class CellGrounds {
     }
     return heights
   }
+}
+
+/** Lake whose circle a point of the world is in. */
+function lakeAt({ atmosphere, lakes }: Terrain, position: Vector3): GroundWater | undefined {
+  if (lakes.length === 0) return undefined
+  const { ellipsoid, worldToECEF } = atmosphere
+  ellipsoid.footPoint(subpoint.copy(position).applyMatrix4(worldToECEF), subpoint)
+  return lakes.find(lake => lake.covers(subpoint))
 }
 
 /** Height by which the ground bends down from the plane of the plants' frame [m]. */

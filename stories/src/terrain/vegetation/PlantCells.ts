@@ -51,6 +51,9 @@ export interface PlantCellsOptions {
   readonly sow: (cell: GroundCell) => void
 }
 
+/** Least height over a lake's surface that plants grow at [m]. */
+const DRY = 0.1
+
 const place = new Vector3()
 
 /** Part of the plants that is drawn at a distance [m]. */
@@ -208,8 +211,10 @@ export class PlantCells {
     const plant = (x: number, z: number, size: number, tint: number): void => {
       if (n === most) return
       if (n === 0) this.#heights = grounds.heightsOf(ground, terrain, toWorld, u, v)
+      const height = this.#heightAt(x, z)
+      if (height < ground.water + DRY) return
       const at = first + 4 * n
-      places.set([(u + x) * side, this.#heightAt(x, z), (v + z) * side, size], at)
+      places.set([(u + x) * side, height, (v + z) * side, size], at)
       looks.set([2 * Math.PI * random(), random(), n / most, tint], at)
       n++
     }

@@ -2,8 +2,9 @@ import type { Terrain } from '@welkin/terrain'
 import type { BufferGeometry, Mesh } from 'three'
 import { Frustum, Group, MathUtils, Matrix4, Vector3, type Camera } from 'three'
 import type { NodeMaterial, WebGPURenderer } from 'three/webgpu'
-import { branchedSpruce, leafyTree } from '../../valley/treeShapes'
+import { branchedSpruce } from '../../valley/treeShapes'
 import { randomSequence } from '../../random'
+import { broadleaf } from './broadleaf'
 import { createFlowers, FLOWERS, GOES } from './flowers'
 import { createGrass, GRASSES } from './grass'
 import { createImpostors, drawPictures, type TreePictures } from './impostors'
@@ -97,9 +98,9 @@ function sowFlowers(cell: GroundCell, order: readonly number[]): void {
 
 /** Kinds of trees: their shape, and sizes inside of a wood and at its edge. */
 const TREES = [
-  { shape: () => branchedSpruce(9, 6), inside: 0.8, edge: 0.3, open: 0.004, size: [0.6, 2] },
-  { shape: () => leafyTree('lime', 14), inside: 0.12, edge: 0.55, open: 0.012, size: [0.28, 1.5] },
-  { shape: () => leafyTree('birch', 12), inside: 0.08, edge: 0.35, open: 0.006, size: [0.4, 1.2] }
+  { shape: () => branchedSpruce(15, 7), inside: 0.8, edge: 0.3, open: 0.004, size: [0.6, 2] },
+  { shape: () => broadleaf('lime'), inside: 0.12, edge: 0.55, open: 0.012, size: [0.28, 1.5] },
+  { shape: () => broadleaf('birch'), inside: 0.08, edge: 0.35, open: 0.006, size: [0.4, 1.2] }
 ] as const
 
 function sowTrees(
@@ -223,6 +224,8 @@ export class Vegetation extends Group {
     }
     this.#uniforms.viewer.value.copy(viewer)
     this.#uniforms.time.value = seconds
+    const { sunDirection } = this.#terrain.atmosphere
+    this.#uniforms.sun.value.copy(sunDirection).transformDirection(this.#toFrame)
     let isPlanted = false
     for (const cells of this.#cells) {
       if (!cells.update(this.#terrain, this.matrix, viewer.x, viewer.z, until)) continue

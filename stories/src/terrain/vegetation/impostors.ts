@@ -41,8 +41,8 @@ import {
 
 /** Sides that a tree is drawn from, and texels of a picture of it. */
 const SIDES = 8
-const WIDTH = 96
-const HEIGHT = 192
+const WIDTH = 128
+const HEIGHT = 208
 
 /** Width and height that a picture shows, the tree's foot in the middle of its lower edge [m]. */
 const FRAME = { width: 6.6, height: 11 }
@@ -127,29 +127,18 @@ export function createImpostors(
   const material = new PlantMaterial({ side: DoubleSide })
   const { foot, size, random, tint, distance } = plantNodes(uniforms)
   const yaw = attribute<'vec4'>('plantLook', 'vec4').x as unknown as Float
-  const to = uniforms.viewer.sub(foot).toConst() as unknown as Vec3
-  const level = to.xz.length().max(1e-3).toConst() as unknown as Float
-  // Azimuth of the viewer about the tree, in its own frame.
-  const azimuth = to.x.atan(to.z).sub(yaw).toConst() as unknown as Float
-  const right = vec3(to.z.div(level), 0, to.x.div(level).negate())
   const shown = distance
     .greaterThan(from)
     .select(smoothstep(goes[0], goes[1], distance.mul(random.mul(0.2).add(0.9))).oneMinus(), 0)
-  const { x, y } = positionGeometry
   const scaled = size.mul(shown)
-  material.positionNode = foot
-    .add(right.mul(x.mul(FRAME.width)).mul(scaled))
-    .add(vec3(0, y.mul(FRAME.height), 0).mul(scaled))
-  const side = varying(
-    floor(
-      fract(azimuth.div(2 * Math.PI))
-        .mul(SIDES)
-        .add(0.5)
-    )
-      .mod(SIDES)
-      .div(SIDES)
-  ).setInterpolation('flat')
-  const at = vec2(uv().x.div(SIDES).add(side), uv().y.oneMinus()).toConst()
+  const towards = (to: Vec3): Picture => pictureTowards(to, yaw, foot, scaled)
+  const seen = towards(uniforms.viewer.sub(foot).toConst())
+  const lit = towards(uniforms.sun)
+  const at = seen.at
+  material.positionNode = seen.position
+  // Shadow maps see the side that the sun does.
+  material.castShadowPositionNode = lit.position
+  material.maskShadowNode = texture(pictures.color.texture, lit.at).a.greaterThan(SOLID[0])
   const color = texture(pictures.color.texture, at).toConst() as unknown as Node<'vec4'>
   const normal = texture(pictures.normal.texture, at).toConst() as unknown as Node<'vec4'>
   const solid = mix(SOLID[0], SOLID[1], smoothstep(80, FAR, varying(distance)))
@@ -168,5 +157,36 @@ export function createImpostors(
     material
   )
   mesh.frustumCulled = false
+  mesh.castShadow = mesh.receiveShadow = true
   return mesh
+}
+
+/** A tree's picture: place of a vertex, and place in the texture of the side that it shows. */
+interface Picture {
+  readonly position: Vec3
+  readonly at: Node<'vec2'>
+}
+
+/**
+ * Picture that turns to what sees it.
+ *
+ * @param to - Way from its foot to that, of any length.
+ * @param yaw - Turn of the tree about the vertical.
+ */
+function pictureTowards(to: Vec3, yaw: Float, foot: Vec3, size: Float): Picture {
+  const level = to.xz.length().max(1e-3).toConst() as unknown as Float
+  // Azimuth about the tree, in its own frame.
+  const azimuth = to.x.atan(to.z).sub(yaw).toConst() as unknown as Float
+  const right = vec3(to.z.div(level), 0, to.x.div(level).negate())
+  const { x, y } = positionGeometry
+  const across = right.mul(x.mul(FRAME.width))
+  const position = foot.add(across.add(vec3(0, y.mul(FRAME.height), 0)).mul(size))
+  const sector = floor(
+    fract(azimuth.div(2 * Math.PI))
+      .mul(SIDES)
+      .add(0.5)
+  )
+  const side = varying(sector.mod(SIDES).div(SIDES)).setInterpolation('flat')
+  const at = vec2(uv().x.div(SIDES).add(side), uv().y.oneMinus()).toConst()
+  return { position, at }
 }

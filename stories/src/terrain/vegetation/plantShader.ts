@@ -8,8 +8,12 @@ import type { PlantCells, Thinning } from './PlantCells'
 export type Float = Node<'float'>
 export type Vec3 = Node<'vec3'>
 
-/** Place of the viewer in the frame of plants [m], and time that wind moves them by [s]. */
-export const plantUniforms = () => ({ viewer: uniform(new Vector3()), time: uniform(0) })
+/** Place of the viewer in the frame of plants [m], direction to the sun there, and time that wind moves them by [s]. */
+export const plantUniforms = () => ({
+  viewer: uniform(new Vector3()),
+  sun: uniform(new Vector3(0, 1, 0)),
+  time: uniform(0)
+})
 export type PlantUniforms = ReturnType<typeof plantUniforms>
 
 /** Place and look of a plant in a shader. */

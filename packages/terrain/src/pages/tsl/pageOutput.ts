@@ -1,4 +1,4 @@
-import { Fn, float, int, ivec2, positionGeometry, texture, vec2, vec4 } from 'three/tsl'
+import { Fn, int, ivec2, positionGeometry, texture, vec2, vec4 } from 'three/tsl'
 import type { DataArrayTexture, Texture } from 'three'
 import type { HeightSource, SurfacePoint } from '../../heights/HeightSource'
 import { heightAndSky } from './skyShare'
@@ -128,7 +128,7 @@ const loaded = (heights: DataArrayTexture, { row }: PageUniforms, texel: Vec2): 
   return node.load(ivec2(texel as never)).depth(int(row)).x
 }
 
-/** Height and climate of a vertex, from heights that were loaded: all of the sky is seen. */
+/** Height, and climate with the share of the sky, of a vertex, from what was loaded. */
 export const loadedHeightsOf = (
   heights: DataArrayTexture,
   tile: PageUniforms,
@@ -138,9 +138,14 @@ export const loadedHeightsOf = (
   Fn(() => {
     const texel = texelOf(side)
     const place = placeAt(tile, faceAxes(tile.face), texel, side)
+    // Shares of the sky follow the heights, in rows as long.
+    const wide = density * (side - 1) + 3
+    const index = texel.y.mul(side).add(texel.x).toConst()
+    const row = index.add(0.5).div(wide).floor().toConst()
+    const sky = loaded(heights, tile, vec2(index.sub(row.mul(wide)), row.add(wide)))
     return vec4(
       loaded(heights, tile, texel.mul(density).add(1)),
-      packed(climateAt(tile, place), float(1)),
+      packed(climateAt(tile, place), sky),
       0,
       1
     )

@@ -1,4 +1,4 @@
-import { PERIOD, SEA_WAVES, WAVE_SLOPE } from '../seaWaves'
+import { PERIOD, SEA_WAVES, WARP, WARPED, WARPS, WAVE_SLOPE } from '../seaWaves'
 
 type Vector = readonly [number, number, number]
 
@@ -30,18 +30,28 @@ export function seaWaves(
   seaVariance: number,
   seconds: number
 ): { slope: Vector; variance: number } {
+  const phases = WARPS.map(warp => (2 * Math.PI * dot(warp, offset)) / PERIOD)
+  const warped = offset.map((part, i) => part + WARP * Math.sin(phases[i])) as unknown as Vector
   const slope = [0, 0, 0]
   let shown = 0
   for (const { vector, length, frequency } of SEA_WAVES) {
     const direction = vector.map(part => (part * length) / PERIOD) as unknown as Vector
     const steepest = Math.sqrt(seaVariance) * WAVE_SLOPE * Math.max(1 - footprint / length, 0)
-    const phase = 2 * Math.PI * (dot(direction, offset) / length - frequency * seconds)
-    const upward = dot(direction, up)
+    const phase = 2 * Math.PI * (dot(direction, warped) / length - frequency * seconds)
+    // Derivative of the warped direction's phase along each axis.
+    const turned = direction.map((part, axis) =>
+      WARPS.reduce(
+        (sum, warp, i) =>
+          sum + direction[i] * WARP * Math.cos(phases[i]) * ((2 * Math.PI * warp[axis]) / PERIOD),
+        part
+      )
+    ) as unknown as Vector
+    const upward = dot(turned, up)
     for (let i = 0; i < 3; i++) {
-      slope[i] += steepest * Math.cos(phase) * (direction[i] - upward * up[i])
+      slope[i] += steepest * Math.cos(phase) * (turned[i] - upward * up[i])
     }
     // Two thirds of its square lie along the ground, and half of that is its mean.
-    shown += steepest ** 2 / 3
+    shown += (WARPED * steepest ** 2) / 3
   }
   return { slope: slope as unknown as Vector, variance: seaVariance - shown }
 }

@@ -1,7 +1,19 @@
-import { Fn, If, exp, float, mix, smoothstep, uniformArray, vec3, vec4 } from 'three/tsl'
+import {
+  Break,
+  Fn,
+  If,
+  exp,
+  float,
+  mat3,
+  mix,
+  smoothstep,
+  uniformArray,
+  vec3,
+  vec4
+} from 'three/tsl'
 import { Vector4 } from 'three'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
-import { GRAVITY, PERIOD, SEA_WAVES, WAVE_SLOPE } from '../seaWaves'
+import { GRAVITY, PERIOD, SEA_WAVES, WARP, WARPED, WARPS, WAVE_SLOPE } from '../seaWaves'
 import { gradientAlong } from './gradientAlong'
 import { schlick } from './schlick'
 
@@ -67,6 +79,8 @@ export interface SeaPlace {
   readonly spread: Float
 }
 
+type Matrix = { mul(vector: Vec3): Vec3 }
+
 type Variable = Vec4 & { assign(value: Vec4): void; addAssign(value: Vec4): void }
 
 /**
@@ -91,6 +105,11 @@ export function seaSurface(
     const sum = vec4(0).toVar() as unknown as Variable
     const find = (): void => {
       const steepest = seaVariance.sqrt().mul(WAVE_SLOPE).toConst()
+      const warp = mat3(...(WARPS.flat() as Parameters<typeof mat3>))
+        .mul((2 * Math.PI) / PERIOD)
+        .toConst() as unknown as Matrix
+      const phases = warp.mul(offset).toConst()
+      const warped = offset.add(phases.sin().mul(WARP)).toConst() as Vec3
       // A loop: where there is no sea, the code of its waves costs time, too.
       loop('wave', SEA_WAVES.length, wave => {
         const { xyz: vector, w: frequency } = vectors.element(wave).toConst() as Vec4
@@ -99,16 +118,23 @@ export function seaSurface(
           .mul(frequency)
           .mul((2 * Math.PI) / GRAVITY)
           .toConst() as Float
-        const periods = offset.dot(vector).div(PERIOD).sub(seconds.mul(frequency))
-        const kept = footprint.mul(perLength).oneMinus().max(0).mul(steepest).toConst()
+        If(footprint.mul(perLength).greaterThan(1), () => {
+          Break()
+        })
+        const periods = warped.dot(vector).div(PERIOD).sub(seconds.mul(frequency))
+        const kept = footprint.mul(perLength).oneMinus().mul(steepest).toConst()
         const tilt = periods
           .fract()
           .mul(2 * Math.PI)
           .cos()
           .mul(kept)
-        sum.addAssign(vec4(vector.mul(tilt.div(perLength.mul(PERIOD))), kept.mul(kept).div(3)))
+        sum.addAssign(
+          vec4(vector.mul(tilt.div(perLength.mul(PERIOD))), kept.mul(kept).mul(WARPED / 3))
+        )
       })
-      sum.assign(vec4(gradientAlong(sum.xyz, up), sum.w))
+      // Derivative of the warp, whose matrix is its own transpose.
+      const turn = warp.mul(sum.xyz.mul(phases.cos()).mul(WARP))
+      sum.assign(vec4(gradientAlong(sum.xyz.add(turn), up), sum.w))
     }
     // From afar no wave is kept.
     if (hasWaves) If(cover.greaterThan(0).and(footprint.lessThan(LONGEST_KEPT)), find)
