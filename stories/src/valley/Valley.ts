@@ -282,7 +282,7 @@ export class Valley {
     this.cycle.update(deltaSeconds)
     if (!this.#state.autoExposure) this.atmosphere.luminanceScale = exposed // stays as it is
     const { sunDirection, luminanceScale } = this.atmosphere
-    this.#cascadeTurns.update(this.camera, sunDirection)
+    this.#cascadeTurns.update(this.camera, sunDirection, ALTITUDE + this.camera.position.y)
     // Cascades have no lights before the first frame.
     for (const { shadow } of [...this.air.cascades.lights, this.#moonlights[0]]) {
       if (shadow !== undefined) shadow.intensity = Number(this.#state.shadows)

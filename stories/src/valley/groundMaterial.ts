@@ -51,6 +51,9 @@ const MIRRORED = 0.2
 const NEAR = 200
 const MIDDLE = 900
 
+/** Way by which the finest grain strays from its place, over the period of its noise. */
+const ASTRAY = 0.45
+
 /** Height of grass and stones over the noise that they follow [m], and distance within which they shade themselves [m]. */
 const GRASS = 0.1
 const SHADED = 140
@@ -215,13 +218,15 @@ export function groundMaterial(
     .toVar()
   const [bentAcross, bentAlong] = [dFdx(bent).toVar(), dFdy(bent).toVar()]
   const grain = Fn(() => {
-    const sum = float(0).toVar()
+    const [tufts, sum] = [float(0).toVar(), float(0).toVar()]
     If(distance.lessThan(MIDDLE), () => {
-      const tufts = texture(picture, bent).grad(bentAcross, bentAlong).r.sub(0.5).mul(0.85)
-      sum.assign(tufts.mul(upTo(MIDDLE)))
+      tufts.assign(texture(picture, bent).grad(bentAcross, bentAlong).r.sub(0.5))
+      sum.assign(tufts.mul(upTo(MIDDLE).mul(0.85)))
     })
     If(distance.lessThan(NEAR), () => {
-      const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(2.2)
+      // Moved by what is coarser: its repetition would be a net.
+      const moved = near.add(vec2(tufts, tufts.negate()).mul(ASTRAY))
+      const finest = texture(grazed, moved).grad(across, along).r.sub(0.5).mul(2.2)
       sum.addAssign(finest.mul(upTo(NEAR)))
     })
     return sum
