@@ -64,11 +64,17 @@ export class LakeMirror {
   /** @param picture - Light of the last frame, and distance along the camera's axis in alpha, up to {@link SKY_DEPTH}. */
   constructor(picture: TextureNode) {
     this.#picture = texture(picture.value)
-    const at = (place: Vec2): Vec4 => this.#picture.sample(place).level(float(0)) as unknown as Vec4
+    const at = (place: Vec2): Vec4 => this.#picture.sample(place).level(float(0))
     // Light is the mean of four pixels, depth the greatest of them: at a mean there is nothing, and water beside a tree is not the tree.
     const corners = [-0.25, 0.25].flatMap(x => [-0.25, 0.25].map(y => vec2(x, y)))
     const depths = corners.map(corner => at(uv().add(this.#texel.mul(corner))).a)
-    this.#pass = new FragmentPass('LakeMirror', vec4(at(uv()).rgb, depths.reduce((a, b) => max(a, b))))
+    this.#pass = new FragmentPass(
+      'LakeMirror',
+      vec4(
+        at(uv()).rgb,
+        depths.reduce((a, b) => max(a, b))
+      )
+    )
   }
 
   /** False for water without a mirror image, which then costs nothing. Default true. */

@@ -46,8 +46,7 @@ type Float = Node<'float'>
 type Vec2 = Node<'vec2'>
 type Vec4 = Node<'vec4'>
 
-const logOf = (color: Node): Float =>
-  log2((luminance(color as Node<'vec3'>) as unknown as Float).max(2 ** DARKEST)) as unknown as Float
+const logOf = (color: Node): Float => log2(luminance(color).max(2 ** DARKEST))
 
 /**
  * Local exposure, as of a print that is dodged and burned: land under a bright sky is shown brighter, the sky darker; what is within either
@@ -152,16 +151,20 @@ export class LocalExposure {
         .sub(0.5)
         .clamp(0, LEVELS - 1)
         .toConst()
-      const lower = level.floor().min(LEVELS - 2).toConst()
+      const lower = level
+        .floor()
+        .min(LEVELS - 2)
+        .toConst()
       // Between the middles of outer tiles, levels beside each other are not mixed.
-      const half = vec2(...TILES).mul(2).reciprocal()
+      const half = vec2(...TILES)
+        .mul(2)
+        .reciprocal()
       const place = uv().clamp(half, half.oneMinus()).toConst()
       const at = (slice: Float): Vec2 =>
         (
-          texture(
-            this.#grid.texture,
-            vec2(place.x.add(slice).div(LEVELS), place.y)
-          ).level(float(0)) as unknown as Vec4
+          texture(this.#grid.texture, vec2(place.x.add(slice).div(LEVELS), place.y)).level(
+            float(0)
+          ) as unknown as Vec4
         ).rg
       const found = mix(at(lower), at(lower.add(1)), level.sub(lower)).toConst()
       const base = found.x.div(found.y.max(1e-4)).add(this.#shift)

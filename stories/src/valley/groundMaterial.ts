@@ -133,7 +133,9 @@ const clumpsIn = (
       const heightAt = (place: Node<'vec2'>): Node<'float'> =>
         texture(picture, place).grad(across, along).g.sub(0.5).mul(2)
       const here = heightAt(at).toConst()
-      found.assign(vec3(here, heightAt(at.add(across)).sub(here), heightAt(at.add(along)).sub(here)))
+      found.assign(
+        vec3(here, heightAt(at.add(across)).sub(here), heightAt(at.add(along)).sub(here))
+      )
     }).Else(() => {
       const [at, across, along] = placed(CLUMPS)
       found.x.assign(texture(picture, at).grad(across, along).r.sub(0.5).mul(2))
