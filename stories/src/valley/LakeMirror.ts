@@ -1,5 +1,5 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import { Matrix4, Vector2 } from 'three'
+import { Matrix4 } from 'three'
 import type { PerspectiveCamera } from 'three'
 import {
   Break,
@@ -52,8 +52,6 @@ export class LakeMirror {
   readonly #image = texture(this.#target.texture)
   readonly #pass: FragmentPass
   readonly #toScreen = uniform(new Matrix4())
-  /** Size of a pixel of the half-sized picture over that of the picture. */
-  readonly #texel = uniform(new Vector2(1, 1))
   /** Part of the screen's height that a radian covers, and 1 once there is a picture. */
   readonly #scale = uniform(1)
   readonly #isDrawn = uniform(0)
@@ -64,17 +62,8 @@ export class LakeMirror {
   /** @param picture - Light of the last frame, and distance along the camera's axis in alpha, up to {@link SKY_DEPTH}. */
   constructor(picture: TextureNode) {
     this.#picture = texture(picture.value)
-    const at = (place: Vec2): Vec4 => this.#picture.sample(place).level(float(0))
-    // Light is the mean of four pixels, depth the greatest of them: at a mean there is nothing, and water beside a tree is not the tree.
-    const corners = [-0.25, 0.25].flatMap(x => [-0.25, 0.25].map(y => vec2(x, y)))
-    const depths = corners.map(corner => at(uv().add(this.#texel.mul(corner))).a)
-    this.#pass = new FragmentPass(
-      'LakeMirror',
-      vec4(
-        at(uv()).rgb,
-        depths.reduce((a, b) => max(a, b))
-      )
-    )
+    const light = this.#picture.sample(uv()).level(float(0)) as unknown as Vec4
+    this.#pass = new FragmentPass('LakeMirror', light)
   }
 
   /** False for water without a mirror image, which then costs nothing. Default true. */
@@ -100,7 +89,6 @@ export class LakeMirror {
     this.#kept = luminanceScale
     const { width, height } = this.#picture.value.image as { width: number; height: number }
     this.#target.setSize(Math.ceil(width / 2), Math.ceil(height / 2))
-    this.#texel.value.set(1 / this.#target.width, 1 / this.#target.height)
     this.#pass.render(renderer, this.#target)
     this.#toScreen.value.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
     this.#scale.value = camera.projectionMatrix.elements[5] / 2
@@ -132,9 +120,7 @@ export class LakeMirror {
         const clip = from.add(along.mul(far)).toConst()
         return vec3(screenPlace(clip), clip.w).toConst()
       }
-      // As it was kept: between a tree and the lake behind it, rays would meet blocks.
-      const depthAt = (place: Vec2): Node<'float'> =>
-        this.#read(place.div(this.#texel).floor().add(0.5).mul(this.#texel)).a
+      const depthAt = (place: Vec2): Node<'float'> => this.#read(place).a
       const hit = vec3(0).toVar()
       const isHit = float(0).toVar()
       const before = float(0).toVar()
