@@ -141,37 +141,35 @@ export class LocalExposure {
 
   /** A picture, dodged and burned. */
   shown(picture: Node): Node<'vec4'> {
-    return Fn(() => {
-      const color = vec4(picture as Vec4).toConst()
-      const log = logOf(color.rgb).sub(this.#shift).toConst()
-      const [darkest, brightest] = STOPS
-      const level = log
-        .sub(darkest)
-        .mul(LEVELS / (brightest - darkest))
-        .sub(0.5)
-        .clamp(0, LEVELS - 1)
-        .toConst()
-      const lower = level
-        .floor()
-        .min(LEVELS - 2)
-        .toConst()
-      // Between the middles of outer tiles, levels beside each other are not mixed.
-      const half = vec2(...TILES)
-        .mul(2)
-        .reciprocal()
-      const place = uv().clamp(half, half.oneMinus()).toConst()
-      const at = (slice: Float): Vec2 =>
-        (
-          texture(this.#grid.texture, vec2(place.x.add(slice).div(LEVELS), place.y)).level(
-            float(0)
-          ) as unknown as Vec4
-        ).rg
-      const found = mix(at(lower), at(lower.add(1)), level.sub(lower)).toConst()
-      const base = found.x.div(found.y.max(1e-4)).add(this.#shift)
-      const stops = float(KEY).sub(base).mul(this.#strength).clamp(-MOST, MOST)
-      const gain = found.y.greaterThan(1e-4).select(exp2(stops), 1)
-      return vec4(color.rgb.mul(gain as unknown as Float), color.a)
-    })()
+    const color = vec4(picture as Vec4).toConst()
+    const log = logOf(color.rgb).sub(this.#shift).toConst()
+    const [darkest, brightest] = STOPS
+    const level = log
+      .sub(darkest)
+      .mul(LEVELS / (brightest - darkest))
+      .sub(0.5)
+      .clamp(0, LEVELS - 1)
+      .toConst()
+    const lower = level
+      .floor()
+      .min(LEVELS - 2)
+      .toConst()
+    // Between the middles of outer tiles, levels beside each other are not mixed.
+    const half = vec2(...TILES)
+      .mul(2)
+      .reciprocal()
+    const place = uv().clamp(half, half.oneMinus()).toConst()
+    const at = (slice: Float): Vec2 =>
+      (
+        texture(this.#grid.texture, vec2(place.x.add(slice).div(LEVELS), place.y)).level(
+          float(0)
+        ) as unknown as Vec4
+      ).rg
+    const found = mix(at(lower), at(lower.add(1)), level.sub(lower)).toConst()
+    const base = found.x.div(found.y.max(1e-4)).add(this.#shift)
+    const stops = float(KEY).sub(base).mul(this.#strength).clamp(-MOST, MOST)
+    const gain = found.y.greaterThan(1e-4).select(exp2(stops), 1)
+    return vec4(color.rgb.mul(gain as unknown as Float), color.a)
   }
 
   /** Frees what it draws with. */
