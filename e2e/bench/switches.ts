@@ -55,6 +55,7 @@ const SWITCHES: readonly Switch[] = [
   { name: 'reflections', view: 'shore', least: 0.005 },
   { name: 'autoExposure', state: NIGHT, least: 0.5 },
   { name: 'occlusion', least: 0.005 },
+  { name: 'localExposure', state: { weather: 'shower' }, least: 0.1 },
   { name: 'bloom', least: 0.01 },
   { name: 'depthOfField', least: 0.01 },
   { name: 'motionBlur', isTurning: true, least: 0.01 },

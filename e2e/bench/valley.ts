@@ -23,8 +23,11 @@ const FRO = 15
 /** Ways in which the camera turns: to and fro, so that it sees the same on the whole, or on and on. */
 type Turn = 'fro' | 'on'
 
-/** The sun is 1.5° down: its light and that of lamps, stars and moon are on together. */
+/** The sun is 1.5° down, and lights summits: its shadows and lamps are on together. */
 const DUSK = { hour: 19.8 } as const
+
+/** The sun is 4.5° down: the moon's shadows, lamps, stars and the light of dusk are on together. */
+const NIGHTFALL = { hour: 20.15 } as const
 
 /** Everything that is on before bloom, depth of field and TRAA. */
 const FULL = { occlusion: true, motionBlur: true, bloom: false } as const
@@ -69,6 +72,12 @@ const ROWS: readonly Row[] = [
   {
     name: 'storm at dusk, turning, a flash',
     changes: { ...STORM, ...DUSK },
+    turn: 'on',
+    flash: true
+  },
+  {
+    name: 'storm at nightfall, turning, a flash',
+    changes: { ...STORM, ...NIGHTFALL },
     turn: 'on',
     flash: true
   },

@@ -104,6 +104,10 @@ const meta: Meta<ValleyArgs> = {
       'Reflections',
       'The lake mirrors what is in the picture (SSR); without, the sky alone'
     ),
+    localExposure: effect(
+      'Local exposure',
+      'Land under a bright sky is brighter and the sky darker, as in a print that is dodged and burned'
+    ),
     bloom: effect('Bloom', 'A halo about what is bright'),
     depthOfField: effect(
       'Depth of field',

@@ -2,7 +2,7 @@ import { CloudLayers, cloudQualities } from '@welkin/clouds'
 import { expect, it } from 'vitest'
 import { groundHeight } from '../src/valley/ground'
 import { VIEWS } from '../src/valley/views'
-import { valleyLayers, WeatherBlend } from '../src/valley/weather'
+import { valleyLayers, WeatherBlend, weathers } from '../src/valley/weather'
 
 const qualityIn = (name: 'fair' | 'mist' | 'overcast'): (typeof cloudQualities)['medium'] => {
   const quality = new WeatherBlend(name).qualityOf('medium', true)
@@ -117,4 +117,22 @@ it('the view above the clouds is over those of fair weather', () => {
   const [x, y, z] = VIEWS.above.position
   expect(600 + y).toBeGreaterThan(layers.at(0).parameters.topAltitude + 100)
   expect(y - groundHeight(x, z)).toBeGreaterThan(1000)
+})
+
+/** Display value of a grey by `photographicToneMapping`: AgX, then its S-curve, in sRGB. */
+function shownGrey(light: number): number {
+  const x = (Math.log2(light) + 12.47393) / 16.5
+  const curve = [15.5, -40.14, 31.96, -6.868, 0.4298, 0.1191, -0.00232]
+  const code = curve.reduce((sum, factor) => sum * x + factor, 0)
+  const steep = code ** 1.5 / (code ** 1.5 + (1 - code) ** 1.5)
+  const linear = (steep + 0.6 * (1 - code) * (code - steep)) ** 2.2
+  return 1.055 * linear ** (1 / 2.4) - 0.055
+}
+
+it('an even picture, as of snow, is shown neither white nor dark in any weather', () => {
+  for (const { exposure } of Object.values(weathers)) {
+    const mean = shownGrey(0.17 * 2 ** exposure)
+    expect(mean).toBeGreaterThan(0.2)
+    expect(mean).toBeLessThan(0.5)
+  }
 })

@@ -1,5 +1,6 @@
 import { Quaternion, Vector3, type PerspectiveCamera } from 'three'
 import type { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
+import { RADIUS } from './groundMaterial'
 
 /** Distance by which receivers of shadows are moved along their normals [texels]. */
 const NORMAL_BIAS = 1.2
@@ -14,8 +15,12 @@ const TURN = 0.05
 const WAY = 0.01
 const SUN_TURN = 3e-3
 
-/** Sine of the sun's elevation below which it casts no shadow on anything. */
-const SUNK = -0.05
+/** Radius of the sun [rad]. */
+const SUN_RADIUS = 4.7e-3
+
+/** Sine of the sun's elevation below which all up to an altitude lies in the shadow of the Earth [m]. */
+const sunkBelow = (altitude: number): number =>
+  -Math.sin(Math.sqrt((2 * Math.max(altitude, 0)) / RADIUS) + SUN_RADIUS)
 
 /** A cascade as it was drawn. */
 interface Drawn {
@@ -25,7 +30,10 @@ interface Drawn {
   frame: number
 }
 
-/** Has cascades of shadows drawn by turns, and only where camera or sun have moved: what stands still costs nothing. */
+/**
+ * Has cascades of shadows drawn by turns, and only where camera or sun have moved: what stands still costs nothing, nor does what the
+ * sun has left.
+ */
 export class CascadeTurns {
   readonly #cascades: CSMShadowNode
   readonly #drawn: Drawn[] = []
@@ -47,8 +55,9 @@ export class CascadeTurns {
    * Chooses the cascades that the next frame draws.
    *
    * @param sun - Direction to the sun, world, unit length.
+   * @param altitude - Altitude of the camera [m].
    */
-  update(camera: PerspectiveCamera, sun: Vector3): void {
+  update(camera: PerspectiveCamera, sun: Vector3, altitude: number): void {
     const frame = this.#frame++
     const isTurned = camera.quaternion.angleTo(this.#attitude) > TURN
     const isWhole = this.#isWhole || frame < WHOLE_FRAMES || isTurned
@@ -64,10 +73,17 @@ export class CascadeTurns {
       const isMoved = drawn.camera.distanceTo(camera.position) > WAY * (right - left)
       if (isMoved || drawn.sun.distanceTo(sun) > SUN_TURN) stale.push(i)
     }
-    if (sun.y < SUNK && !isWhole) return
     const oldest = stale.toSorted((a, b) => this.#drawn[a].frame - this.#drawn[b].frame).slice(0, 1)
     for (const i of isWhole ? this.#drawn.keys() : oldest) {
-      this.#cascades.lights[i].shadow!.needsUpdate = true
+      const { shadow } = this.#cascades.lights[i]
+      const { left, right } = shadow!.camera
+      if (sun.y < sunkBelow(altitude + (right - left) / 2) && frame >= WHOLE_FRAMES) {
+        // Drawn once the sun is back.
+        this.#drawn[i].sun.set(0, 0, 0)
+        this.#drawn[i].frame = frame
+        continue
+      }
+      shadow!.needsUpdate = true
       this.#drawn[i].camera.copy(camera.position)
       this.#drawn[i].sun.copy(sun)
       this.#drawn[i].frame = frame

@@ -71,17 +71,14 @@ const SHAFTS: Readonly<Record<CloudQualityName, LightShaftsQuality>> = {
   ultra: 'high'
 }
 
-/** Elevation of the sun over which moon and night sky light nothing that one sees [degrees]. */
-const NIGHT_LIGHTS = 4
+/** Elevation of the sun over which moon and night sky light nothing that one sees: a full moon gives a hundredth of the light of dusk [degrees]. */
+const NIGHT_LIGHTS = -4
 
 /** Elevation of the sun below which it lights no mountain of the valley [degrees]. */
 const SUNLIGHT = -3
 
 /** Elevation of the sun below which the sky that it lights is darker than that of stars and airglow [degrees]. */
 const TWILIGHT = -20
-
-/** Brighter pictures while snow lies, or it is grey [stops]. */
-const SNOW_COMPENSATION = 0.6
 
 /** Brighter pictures of nights, or what the moon lights is black [stops], and elevation of the sun by which they are [degrees]. */
 const NIGHT_COMPENSATION = 0.9
@@ -285,7 +282,7 @@ export class Valley {
     this.cycle.update(deltaSeconds)
     if (!this.#state.autoExposure) this.atmosphere.luminanceScale = exposed // stays as it is
     const { sunDirection, luminanceScale } = this.atmosphere
-    this.#cascadeTurns.update(this.camera, sunDirection)
+    this.#cascadeTurns.update(this.camera, sunDirection, ALTITUDE + this.camera.position.y)
     // Cascades have no lights before the first frame.
     for (const { shadow } of [...this.air.cascades.lights, this.#moonlights[0]]) {
       if (shadow !== undefined) shadow.intensity = Number(this.#state.shadows)
@@ -294,9 +291,7 @@ export class Valley {
     const elevation = MathUtils.radToDeg(Math.asin(sunDirection.y))
     const share = MathUtils.clamp((from - elevation) / (from - to), 0, 1)
     const night = MathUtils.smoothstep(-elevation, 0, -NIGHT)
-    const { snowCover } = this.#falling.water
-    const byDay = this.weather.exposure + SNOW_COMPENSATION * snowCover
-    this.exposure.compensation = MathUtils.lerp(byDay, NIGHT_COMPENSATION, night)
+    this.exposure.compensation = MathUtils.lerp(this.weather.exposure, NIGHT_COMPENSATION, night)
     const isNight = elevation < NIGHT_LIGHTS
     const isMoonlit = this.#moonShadow.update(this.camera, isNight)
     for (const light of this.#moonlights) setLit(light, isMoonlit)
@@ -307,10 +302,11 @@ export class Valley {
     this.#skyMap.update(this.#renderer, this.camera, luminanceScale)
     this.#village.light(share, luminanceScale)
     this.#mirror.scaleTo(luminanceScale)
+    this.#finish.beforeDrawn(luminanceScale, night)
     const { autoClear } = this.#renderer
     this.#renderer.autoClear = false // every pixel of the canvas is drawn: passes before it clear for themselves
     this.pipeline.render()
-    this.#finish.afterDrawn()
+    this.#finish.afterDrawn(luminanceScale)
     this.#renderer.autoClear = autoClear
     if (this.#water.mesh.visible) this.#mirror.update(this.#renderer, this.camera, luminanceScale)
   }

@@ -5,6 +5,7 @@ import {
   Fn,
   If,
   mix,
+  normalView,
   normalWorldGeometry,
   smoothstep,
   varying,
@@ -31,6 +32,9 @@ const LYING = [0.12, 0.7] as const
 
 /** Part of its brightness that a wet surface keeps: of what it scatters, its film mirrors half back (Lekner & Dorf 1988). */
 const WET = 0.6
+
+/** Sum of a light's primaries below which it is not seen: a thousandth of middle grey. */
+const UNSEEN = 2e-4
 
 /** Maps that have the light of a light. */
 const _mapped = new WeakMap<Light, SkyLightMap>()
@@ -79,22 +83,32 @@ class VertexLightingModel extends PhongLightingModel {
 
   override direct(input: LightingModelDirectInput, builder: NodeBuilder): void {
     const { light } = input.lightNode as unknown as ShadowedLightNode
-    const lightColor = this.#colorOf(input)
-    If(litOf(light).greaterThan(0), () => super.direct({ ...input, lightColor }, builder))
+    const { color, shadow } = this.#colorOf(input)
+    const add = (lightColor: Vec3): void => super.direct({ ...input, lightColor }, builder)
+    If(litOf(light).greaterThan(0), () => {
+      if (shadow === null) return add(color)
+      // Shadows are looked up only where there is light to lose.
+      const facing = normalView.dot(input.lightDirection as Vec3).greaterThan(0)
+      const bright = color.r.add(color.g).add(color.b).greaterThan(UNSEEN)
+      If(facing.and(bright), () => add(color.mul(shadow)))
+    })
   }
 
-  /** Colour of a light: of a directional one all but the shadows of things is of the vertices. */
-  #colorOf({ lightColor, lightNode }: LightingModelDirectInput): Vec3 {
+  /** Colour of a light, and shadows of things in it: of a directional light all but these is of the vertices. */
+  #colorOf({ lightColor, lightNode }: LightingModelDirectInput): {
+    color: Vec3
+    shadow: Vec3 | null
+  } {
     const { light, baseColorNode, shadowNode } = lightNode as unknown as ShadowedLightNode
-    if (light.isDirectionalLight !== true) return lightColor as Vec3
+    if (light.isDirectionalLight !== true) return { color: lightColor as Vec3, shadow: null }
     const base = baseColorNode ?? (lightColor as Vec3)
     if (shadowNode instanceof CloudShadowNode && shadowNode.shadowNode !== null) {
       // Shadows of clouds are soft: they are found at the vertices, too.
       const color = atVertices([[light, base.mul(ofCloudsAlone(shadowNode))]])
-      return color.mul(shadowNode.shadowNode as Vec3)
+      return { color, shadow: shadowNode.shadowNode as Vec3 }
     }
     const color = atVertices([[light, base]])
-    return baseColorNode === null ? color : color.mul(shadowNode as Vec3)
+    return { color, shadow: baseColorNode === null ? null : (shadowNode as Vec3) }
   }
 }
 

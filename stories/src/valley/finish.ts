@@ -12,6 +12,7 @@ import type { Node, Renderer, RenderPipeline } from 'three/webgpu'
 import type { ValleyAir } from '../valleyAir'
 import { LastOcclusion } from './LastOcclusion'
 import { lensOn } from './lens'
+import { LocalExposure } from './LocalExposure'
 import { PictureNode } from './PictureNode'
 import { shutter } from './shutter'
 import { stillVelocity } from './stillVelocity'
@@ -31,6 +32,8 @@ export interface ValleyEffects {
   antialiasing: keyof typeof ANTIALIASING
   /** Occlusion of the light of the sky (GTAO). */
   occlusion: boolean
+  /** Land under a bright sky is shown brighter, the sky darker. */
+  localExposure: boolean
   bloom: boolean
   depthOfField: boolean
   motionBlur: boolean
@@ -57,6 +60,7 @@ export class ValleyFinish {
   #key = ''
   #used: Disposable[] = []
   #occlusion?: LastOcclusion
+  #local?: LocalExposure
 
   constructor(
     renderer: Renderer,
@@ -73,22 +77,44 @@ export class ValleyFinish {
   }
 
   /** Has the picture drawn with these effects; compiles if others were on. */
-  set({ antialiasing, occlusion, bloom, depthOfField, motionBlur }: ValleyEffects): void {
-    const effects = { antialiasing, occlusion, bloom, depthOfField, motionBlur }
+  set({
+    antialiasing,
+    occlusion,
+    localExposure,
+    bloom,
+    depthOfField,
+    motionBlur
+  }: ValleyEffects): void {
+    const effects = { antialiasing, occlusion, localExposure, bloom, depthOfField, motionBlur }
     const key = JSON.stringify(effects)
     if (key === this.#key) return
     this.#key = key
     this.dispose()
-    const shown = this.#keep(new ToneTable()).shown(this.#picture(effects))
+    this.#local = localExposure
+      ? this.#keep(new LocalExposure(this.#renderer, this.#air.picture))
+      : undefined
+    const picture = this.#picture(effects)
+    const shown = this.#keep(new ToneTable()).shown(this.#local?.shown(picture) ?? picture)
     const smooth = { fxaa, smaa }[antialiasing as string]
     this.#pipeline.outputNode =
       smooth === undefined ? shown : this.#keep(smooth(this.#texture(shown, 'Shown')))
     this.#pipeline.needsUpdate = true
   }
 
+  /**
+   * Takes what the next picture is exposed by.
+   *
+   * @param night - 1 by night, whose dark land stays dark; 0 by day.
+   */
+  beforeDrawn(luminanceScale: number, night: number): void {
+    this.#local?.scaleTo(luminanceScale)
+    if (this.#local !== undefined) this.#local.strength = 1 - night
+  }
+
   /** Keeps what the next picture has of the one that was just drawn. */
-  afterDrawn(): void {
+  afterDrawn(luminanceScale: number): void {
     this.#occlusion?.update(this.#renderer, this.#camera)
+    this.#local?.update(this.#renderer, luminanceScale)
   }
 
   /** Has occlusion found anew: other things are drawn now. */

@@ -51,11 +51,14 @@ const MIRRORED = 0.2
 const NEAR = 200
 const MIDDLE = 900
 
+/** Way by which the finest grain strays from its place, over the period of its noise. */
+const ASTRAY = 0.45
+
 /** Height of grass and stones over the noise that they follow [m], and distance within which they shade themselves [m]. */
 const GRASS = 0.1
 const SHADED = 140
 
-/** Height of crowns over the noise that they follow [m], and distance within which woods shade themselves [m]. */
+/** Height of crowns over their picture [m], and distance within which woods shade themselves [m]. */
 const CROWNS = 3.5
 const WOODED = 14_000
 
@@ -75,23 +78,27 @@ const BLURRED = 1.5
 /** Anisotropy of rock. Less: walls seen from aside are smeared down their slopes. */
 const ROCK_ANISOTROPY = 4
 
-/** Widths over which noise of crowns, and of clumps of grass elsewhere, repeats [m]; share of woods from which ground is theirs. */
-const CROWNED = 43
+/** Widths over which crowns, and clumps of grass elsewhere, repeat [m]; share of woods from which ground is theirs. */
+const CROWNED = 97
 const CLUMPS = 71
 const WOODLAND = 0.12
 
 /** Width of the edge of a wood, in its share of the ground. */
 const EDGE = 0.16
 
-/** Normal of ground with grain on it, by differences between pixels (Mikkelsen 2010, "Bump mapping unparametrized surfaces"). */
-function grainNormal(normal: Node<'vec3'>, height: Node<'float'>): Node<'vec3'> {
-  const [right, down] = [dFdx(positionWorld).toConst(), dFdy(positionWorld).toConst()]
+/**
+ * Normal of ground with grain on it (Mikkelsen 2010, "Bump mapping unparametrized surfaces").
+ *
+ * @param rise - Difference of the grain's height to the pixels at the right and below [m].
+ */
+function grainNormal(
+  normal: Node<'vec3'>,
+  rise: Node<'vec2'>,
+  { right, down }: Footprint
+): Node<'vec3'> {
   const [first, second] = [down.cross(normal).toConst(), normal.cross(right).toConst()]
   const area = right.dot(first).toConst()
-  const slope = first
-    .mul(dFdx(height))
-    .add(second.mul(dFdy(height)))
-    .mul(area.sign())
+  const slope = first.mul(rise.x).add(second.mul(rise.y)).mul(area.sign())
   return normal.mul(area.abs()).sub(slope).normalize()
 }
 
@@ -108,18 +115,33 @@ function turned({ x, z }: Node<'vec3'>, period: number): Node<'vec2'> {
   return vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
 }
 
-/** Noise of crowns in woods, which are finer than clumps of grass elsewhere: coarse ones seen along slopes are streaks. */
-function clumpsIn(
+/**
+ * Crowns in woods, clumps of grass elsewhere: height about 0, and for crowns its differences to the pixels at the right and below, since those
+ * between neighbours would be blocks of four pixels.
+ */
+const clumpsIn = (
   picture: Texture,
   isWood: Node<'bool'>,
   { right, down }: Footprint
-): Node<'float'> {
-  const finer = isWood.select(CLUMPS / CROWNED, 1).toVar()
-  const [at, across, along] = [positionWorld, right, down].map(way =>
-    turned(way, CLUMPS).mul(finer)
-  )
-  return texture(picture, at).grad(across, along).r.sub(0.5).mul(2)
-}
+): Node<'vec3'> =>
+  Fn(() => {
+    const found = vec3(0).toVar()
+    const placed = (period: number): Node<'vec2'>[] =>
+      [positionWorld, right, down].map(way => turned(way, period).toConst())
+    If(isWood, () => {
+      const [at, across, along] = placed(CROWNED)
+      const heightAt = (place: Node<'vec2'>): Node<'float'> =>
+        texture(picture, place).grad(across, along).g.sub(0.5).mul(2)
+      const here = heightAt(at).toConst()
+      found.assign(
+        vec3(here, heightAt(at.add(across)).sub(here), heightAt(at.add(along)).sub(here))
+      )
+    }).Else(() => {
+      const [at, across, along] = placed(CLUMPS)
+      found.x.assign(texture(picture, at).grad(across, along).r.sub(0.5).mul(2))
+    })
+    return found
+  })()
 
 /**
  * Noise of rock, seen from the side: from above, steep slopes would have streaks. Height of cracks [m], and their brightness in [−1, 1].
@@ -198,13 +220,15 @@ export function groundMaterial(
     .toVar()
   const [bentAcross, bentAlong] = [dFdx(bent).toVar(), dFdy(bent).toVar()]
   const grain = Fn(() => {
-    const sum = float(0).toVar()
+    const [tufts, sum] = [float(0).toVar(), float(0).toVar()]
     If(distance.lessThan(MIDDLE), () => {
-      const tufts = texture(picture, bent).grad(bentAcross, bentAlong).r.sub(0.5).mul(0.85)
-      sum.assign(tufts.mul(upTo(MIDDLE)))
+      tufts.assign(texture(picture, bent).grad(bentAcross, bentAlong).r.sub(0.5))
+      sum.assign(tufts.mul(upTo(MIDDLE).mul(0.85)))
     })
     If(distance.lessThan(NEAR), () => {
-      const finest = texture(grazed, near).grad(across, along).r.sub(0.5).mul(2.2)
+      // Moved by what is coarser: its repetition would be a net.
+      const moved = near.add(vec2(tufts, tufts.negate()).mul(ASTRAY))
+      const finest = texture(grazed, moved).grad(across, along).r.sub(0.5).mul(2.2)
       sum.addAssign(finest.mul(upTo(NEAR)))
     })
     return sum
@@ -212,7 +236,8 @@ export function groundMaterial(
   const footprint = { right: dFdx(positionWorld).toVar(), down: dFdy(positionWorld).toVar() }
   const cover = attribute<'vec2'>('cover', 'vec2')
   const isWood = cover.x.greaterThan(WOODLAND)
-  const clumps = clumpsIn(picture, isWood, footprint).mul(upTo(9000)).toVar()
+  const clumped = clumpsIn(picture, isWood, footprint).mul(upTo(9000)).toVar()
+  const clumps = clumped.x
   const fine = grain.add(clumps).add(patches).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const rough = broad.mul(0.5).add(patches).toVar()
@@ -233,18 +258,13 @@ export function groundMaterial(
     })
     return found
   })().toVar()
-  const crowns = clumps.mul(1.3).add(patches).mul(CROWNS).mul(forest)
-  const relieved = Fn(() => {
-    const raised = grain.mul(GRASS).mul(upTo(SHADED)).toVar()
-    If(forest.add(rocky).greaterThan(0), () => {
-      // Seen along the ground, differences between pixels are those of noise.
-      const way = cameraPosition.sub(positionWorld).normalize()
-      const facing = smoothstep(0.1, 0.45, broadNormal.dot(way))
-      raised.addAssign(crowns.mul(upTo(WOODED)).add(cracks.x).mul(facing))
-    })
-    return raised
-  })().toVar()
-  const normal = grainNormal(broadNormal, relieved).toVar()
+  // Seen along the ground, differences between pixels are those of noise.
+  const way = cameraPosition.sub(positionWorld).normalize()
+  const facing = smoothstep(0.1, 0.45, broadNormal.dot(way)).toConst()
+  const stones = grain.mul(GRASS).mul(upTo(SHADED)).add(cracks.x.mul(facing)).toConst()
+  const crowns = clumped.yz.mul(forest.mul(CROWNS).mul(upTo(WOODED)).mul(facing))
+  const rise = vec2(dFdx(stones), dFdy(stones)).add(crowns)
+  const normal = grainNormal(broadNormal, rise, footprint).toVar()
   material.normalNode = transformNormalToView(normal)
   const dry = broad.mul(0.6).add(fine.mul(0.28)).add(0.43).clamp()
   const meadow = mix(vec3(0.053, 0.086, 0.027), vec3(0.14, 0.134, 0.055), dry).toVar()

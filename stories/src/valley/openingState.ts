@@ -29,6 +29,7 @@ export const openingState = {
   autoExposure: true,
   antialiasing: 'none' as const,
   occlusion: false,
+  localExposure: true,
   reflections: true,
   bloom: true,
   depthOfField: false,

@@ -35,6 +35,7 @@ const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
   ['MotionBlur', 'motion blur'],
   ['Motion', 'velocity of sky and clouds'],
   ['SMAA', 'SMAA'],
+  ['LocalExposure', 'local exposure'],
   ['Shown', 'tone mapping'],
   // A pass of three's, of what stands in the scene.
   ['output', 'land, trees, village and lake, lit'],

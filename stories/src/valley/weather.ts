@@ -27,7 +27,7 @@ export interface Weather {
   /** Extinction of the deck [1/m]; rain below it over that below cumulus, in [0, 1]. */
   readonly deckDensity: number
   readonly deckRain: number
-  /** Brightness of pictures over what is metered [EV]: storms are dark, snow is white. */
+  /** Brightness of pictures over what is metered, at most 0 [EV]: storms are dark. */
   readonly exposure: number
 }
 
@@ -70,8 +70,7 @@ export const weathers = {
     turbidity: 3,
     mist: 0,
     ...calm,
-    snow: 1.5,
-    exposure: 0.3
+    snow: 1.5
   },
   storm: {
     cumulus: 0.45,
