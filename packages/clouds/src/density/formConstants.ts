@@ -64,6 +64,11 @@ export const heightForm = {
    */
   inversion: 0.72,
   inversionStrength: 17,
+  /**
+   * Strength that a column needs at the base of a layer with relief [–]. Greater: bases rise in strong columns,
+   * too, and a ceiling has holes (*Presets*).
+   */
+  relief: 5,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
   grown: 0.73,
   /**

@@ -37,6 +37,9 @@ export interface LayerNodes {
   coverage: Float
   density: Float
   profileExponent: Float
+  /** Reciprocal of the height in the layer up to which bases rise, and strength needed at height 0 [–]. */
+  perBaseRelief: Float
+  relief: Float
   shapeAmount: Float
   detailAmount: Float
   densityGrowth: Float
@@ -105,7 +108,9 @@ export function layerAt(field: CloudField, index: Int, known?: number): LayerNod
   const start = index.mul(int(LAYER_STRIDE)).toConst()
   const read = (slot: number): Vec4 => field.array.element(start.add(int(slot)))
   const once = (slot: number): Vec4 => read(slot).toConst()
-  const [extent, form, shear, kind, column, edges, periods] = [0, 1, 18, 19, 20, 21, 22].map(once)
+  const [extent, form, shear, kind, column, edges, periods, bases] = [
+    0, 1, 18, 19, 20, 21, 22, 23
+  ].map(once)
   const lattice =
     (slot: number): Lattice =>
     v => {
@@ -126,6 +131,8 @@ export function layerAt(field: CloudField, index: Int, known?: number): LayerNod
     coverage: extent.z,
     density: extent.w,
     profileExponent: form.x,
+    perBaseRelief: bases.x,
+    relief: bases.y,
     shapeAmount: form.y,
     detailAmount: form.z,
     perShapePeriod: form.w,
@@ -134,7 +141,7 @@ export function layerAt(field: CloudField, index: Int, known?: number): LayerNod
     detailLattice: lattice(6),
     weatherLattice: lattice(9),
     fieldLattice: lattice(12),
-    mesoscaleLattice: lattice(23),
+    mesoscaleLattice: lattice(24),
     regionLattice: lattice(15),
     displacementInFields: v => turn(12, v),
     directionInFields: v => turn(12, v).normalize(),
