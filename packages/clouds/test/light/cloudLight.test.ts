@@ -268,7 +268,14 @@ describe('cloudAmbient', () => {
 })
 
 describe('litGround', () => {
-  const cloud = { depthThrough: 40, layered: 0, radius: 5000, altitude: 800, cosLight: 0.7, albedo: 0.1 }
+  const cloud = {
+    depthThrough: 40,
+    layered: 0,
+    radius: 5000,
+    altitude: 800,
+    cosLight: 0.7,
+    albedo: 0.1
+  }
   const lit = (changes: Partial<typeof cloud>): number => litGround(phase, { ...cloud, ...changes })
 
   it('is dark below the base of a storm, less so farther up and under a low light, and hardly below a small cloud', () => {
