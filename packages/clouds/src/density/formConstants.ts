@@ -95,7 +95,7 @@ export const heightForm = {
 export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
   coarse: 0.76,
-  fine: 1.57,
+  fine: 1.55,
   detail: 0.48,
   /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
   coarseGrowth: 0.337,

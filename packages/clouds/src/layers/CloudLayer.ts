@@ -92,7 +92,7 @@ const defaults: CloudLayerParameters = {
   shear: 0.1,
   anvil: 0,
   openCells: 0,
-  densityGrowth: 0.186,
+  densityGrowth: 0.184,
   weatherWeights: [1, 0, 0, 0],
   wind: { east: 8, north: 0 },
   precipitation: null,
