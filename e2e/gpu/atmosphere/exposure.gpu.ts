@@ -3,6 +3,7 @@ import {
   autoExposure,
   photographicToneMapping,
   purkinjeShift,
+  type PhotographicLook,
   type AutoExposureOptions
 } from '@welkin/atmosphere'
 import {
@@ -183,18 +184,23 @@ gpuTest(
     const pairs = await evaluateOnGpu(renderer, greys, input => {
       const light = vec3(input.x)
       const agx = agxToneMapping(light, float(1)) as Node<'vec3'>
-      const plain = photographicToneMapping({ contrast: 1, saturation: 1 })(light, float(1))
-      const steep = photographicToneMapping({ contrast: 1.5, saturation: 0 })(light, float(1))
-      return vec4(agx.x, (plain as Node<'vec3'>).x, (steep as Node<'vec3'>).x, 0)
+      const mapped = (look: PhotographicLook, color: Node<'vec3'> = light): Node<'vec3'> =>
+        photographicToneMapping(look)(color, float(1)) as Node<'vec3'>
+      const white = [1, 1, 1] as const
+      const plain = mapped({ contrast: 1, saturation: 1, white })
+      const steep = mapped({ contrast: 1.5, saturation: 0, white })
+      const sunlit = mapped({}, light.mul(vec3(1.116, 1, 0.978))).toConst()
+      return vec4(agx.x, plain.x, steep.x, sunlit.x.sub(sunlit.z))
     })
     for (let i = 0; i < greys.length; i++) {
-      const [agx, plain, steep] = pairs.subarray(4 * i)
+      const [agx, plain, steep, tint] = pairs.subarray(4 * i)
       const what = `grey ${greys[i][0]}`
       expectClose(plain, agx, { absolute: 2e-4 }, `${what}, contrast 1`)
       const x = agx ** (1 / 2.2)
       const curve = x ** 1.5 / (x ** 1.5 + (1 - x) ** 1.5)
       const expected = (curve + 0.6 * (1 - x) * (x - curve)) ** 2.2
       expectClose(steep, expected, { absolute: 1e-3 }, `${what}, contrast 1.5`)
+      expectClose(tint, 0, { absolute: 1e-3 }, `${what} in sunlight`)
     }
   },
   { backends: ['webgpu'] }

@@ -301,6 +301,7 @@ gpuTest('gives numbers for any parameters, of clouds and of what falls from them
         coverage: pick(0, 1e-6, 0.5, 1),
         density: pick(0, 1e-9, 0.05, 1),
         profileExponent: pick(1e-9, 0.01, 1, 8),
+        baseRelief: pick(0, 1e-9, 0.5, 1),
         shapeAmount: pick(0, 0.5, 1),
         detailAmount: pick(0, 1),
         weatherScale: pick(0.1, 1, 10),

@@ -172,14 +172,16 @@ gpuTest('scatters light of sky and ground like its float64 twin', async t => {
     const sample = { depthAbove, depthBelow, cosView, layered }
     const { sky, ground } = cloudAmbientShares(light.nodes, sample)
     const [radius, altitude] = [float(1500), depthAbove.mul(200)]
-    const cloud = { depthThrough: depthBelow, layered, radius, altitude, cosLight: cosView }
+    const shade = { layered, radius, altitude, albedo: cosView.abs() }
+    const cloud = { ...shade, depthThrough: depthBelow, cosLight: cosView }
     return vec4(sky, ground, litGround(light.nodes, cloud), 0)
   })
   const expected = inputs.flatMap(([depthAbove, depthBelow, cosView, layered]) => {
     const sample = { depthAbove, depthBelow, cosView, layered }
     const { sky, ground } = twin.cloudAmbient(table, sample)
     const [radius, altitude] = [1500, 200 * depthAbove]
-    const cloud = { depthThrough: depthBelow, layered, radius, altitude, cosLight: cosView }
+    const shade = { layered, radius, altitude, albedo: Math.abs(cosView) }
+    const cloud = { ...shade, depthThrough: depthBelow, cosLight: cosView }
     return [sky, ground, twin.litGround(light.phase, cloud), 0]
   })
   expectClose(Array.from(results), expected, { absolute: 3e-3 })

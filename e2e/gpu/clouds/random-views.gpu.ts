@@ -46,6 +46,7 @@ function randomLayer(next: () => number): Partial<CloudLayerParameters> {
     coverage: extreme(),
     density: extreme() ** 3,
     profileExponent: [0.05, 1, 8][Math.floor(3 * next())],
+    baseRelief: extreme(),
     shapeAmount: extreme(),
     detailAmount: extreme(),
     weatherScale: [0.1, 1, 10][Math.floor(3 * next())],

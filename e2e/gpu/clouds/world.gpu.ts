@@ -201,6 +201,8 @@ gpuTest(
     camera.lookAt(towards(35, 20).add(camera.position))
     camera.updateMatrixWorld()
     const layers = cloudPreset('overcast')
+    // As thick here as in the mean over the planet, which is what surfaces are lit by.
+    layers.at(0).set({ profileExponent: 8, edgeSoftness: 0 })
     const { node, pipeline: make } = cloudsOf(camera, atmosphere, layers, shared)
     const pipeline = make(renderer)
     const draw = async (): Promise<Picture> => {

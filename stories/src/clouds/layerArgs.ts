@@ -8,6 +8,7 @@ export interface LayerArgs {
   coverage: number
   density: number
   profileExponent: number
+  baseRelief: number
   shapeAmount: number
   detailAmount: number
   weatherScale: number
@@ -48,7 +49,7 @@ export function layerArgs(parameters: CloudLayerParameters): LayerArgs {
 
 /** The other way round. A layer upside down becomes a thin one at its base. */
 export function layerParameters(args: LayerArgs): Omit<CloudLayerParameters, 'precipitation'> {
-  const { baseAltitude, topAltitude, coverage, density, profileExponent } = args
+  const { baseAltitude, topAltitude, coverage, density, profileExponent, baseRelief } = args
   const { shapeAmount, detailAmount, weatherScale, shapeScale, detailScale } = args
   const { edgeSoftness, turbulence, shear, anvil, openCells, densityGrowth, shadow } = args
   return {
@@ -57,6 +58,7 @@ export function layerParameters(args: LayerArgs): Omit<CloudLayerParameters, 'pr
     coverage,
     density,
     profileExponent,
+    baseRelief,
     shapeAmount,
     detailAmount,
     weatherScale,
@@ -99,6 +101,7 @@ export const layerArgTypes: ArgTypes<LayerArgs> = {
     0.01,
     'Small: tops at all heights; great: nearly all at one height'
   ),
+  baseRelief: range('Base relief', 0, 1, 0.01, 'Bases of weak columns are higher'),
   shapeAmount: range('Shape', 0, 1, 0.01, 'Billows: bulges that meet in creases'),
   detailAmount: range('Detail', 0, 1, 0.01, 'What is finer than the billows'),
   weatherScale: range('Weather scale', 0.1, 10, 0.05, 'Size and distance of single clouds'),

@@ -29,6 +29,10 @@ throwsEach('exposure', [
     () => photographicToneMapping({ saturation: NaN })
   ],
   [
+    'photographicToneMapping: white must be three numbers > 0, got 1,0,1',
+    () => photographicToneMapping({ white: [1, 0, 1] })
+  ],
+  [
     `DayCycle: sources[0] ${notASource}`,
     () => new DayCycle(atmosphere, { exposureOptions: { sources: [wrong(luna)] } })
   ],

@@ -19,7 +19,7 @@ import {
   weatherScales
 } from '../layers/layerUniforms'
 import { meanColumnOf } from '../layers/meanColumn'
-import { billowForm } from './formConstants'
+import { billowForm, heightForm } from './formConstants'
 import { vec4Array, type Float, type LevelTexture, type Vec3 } from '../tsl-types'
 import { number } from '../uniforms'
 import { windAxis, windRotation } from '../layers/wind'
@@ -232,7 +232,7 @@ export class CloudField {
    */
   #write(index: number, up: Vector3): void {
     const { parameters } = this.layers.at(index)
-    const { baseAltitude, weatherWeights, openCells } = parameters
+    const { baseAltitude, baseRelief, weatherWeights, openCells } = parameters
     const periods = layerPeriods(parameters)
     const scales = weatherScales(weatherWeights, this.worldMap?.coversPlanet === true, openCells)
     const { stretch, edge, coarseness } = layerForms(parameters)
@@ -266,6 +266,7 @@ export class CloudField {
       [column.columnDensity, column.insideDensity, column.profileMean, parameters.densityGrowth],
       [1 / edge, coarseness, parameters.anvil, parameters.shadow ? 1 : 0],
       [1 / periods.weather, 1 / periods.detail, column.fullDensity, parameters.shear],
+      [1 / (baseRelief || 1), baseRelief === 0 ? 0 : heightForm.relief, 0, 0],
       ...lattice(mesoscale, noisePeriods.mesoscale, _subpoint)
     ]
     vectors.forEach((vector, i) => this.values[index * LAYER_STRIDE + i].fromArray(vector))

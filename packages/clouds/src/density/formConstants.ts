@@ -64,6 +64,11 @@ export const heightForm = {
    */
   inversion: 0.72,
   inversionStrength: 17,
+  /**
+   * Strength that a column needs at the base of a layer with relief [–]. Greater: bases rise in strong columns,
+   * too, and a ceiling has holes (*Presets*).
+   */
+  relief: 5,
   /** Height in the layer up to which extinction grows, in [0, 1]. Greater: dull middles (*Cumulus*). */
   grown: 0.73,
   /**
@@ -90,7 +95,7 @@ export const heightForm = {
 export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
   coarse: 0.76,
-  fine: 1.57,
+  fine: 1.55,
   detail: 0.48,
   /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
   coarseGrowth: 0.337,

@@ -28,6 +28,11 @@ export interface CloudLayerParameters {
    * greater: nearly all of them reach the same height, as under an inversion. Without effect on storms.
    */
   readonly profileExponent: number
+  /**
+   * Height up to which weak columns have no cloud, over the layer's thickness, in [0, 1]: bases hang lower where clouds are
+   * thick. 0: flat bases. Without effect on storms.
+   */
+  readonly baseRelief: number
   /** Amount of billows, bulges that meet in creases, in [0, 1]; 0 leaves smooth mounds. */
   readonly shapeAmount: number
   /** Amount of detail finer than the billows, down to 1 m near the camera, in [0, 1]. */
@@ -76,6 +81,7 @@ const defaults: CloudLayerParameters = {
   coverage: 0.35,
   density: 0.1,
   profileExponent: 0.62,
+  baseRelief: 0,
   shapeAmount: 1,
   detailAmount: 1,
   weatherScale: 1,
@@ -86,7 +92,7 @@ const defaults: CloudLayerParameters = {
   shear: 0.1,
   anvil: 0,
   openCells: 0,
-  densityGrowth: 0.186,
+  densityGrowth: 0.184,
   weatherWeights: [1, 0, 0, 0],
   wind: { east: 8, north: 0 },
   precipitation: null,
@@ -99,6 +105,7 @@ const ranges = {
   coverage: [0, 1],
   density: [0, 1],
   profileExponent: [Number.MIN_VALUE, 8],
+  baseRelief: [0, 1],
   shapeAmount: [0, 1],
   detailAmount: [0, 1],
   weatherScale: [0.1, 10],
@@ -142,6 +149,7 @@ export class CloudLayer {
   declare coverage: CloudLayerParameters['coverage']
   declare density: CloudLayerParameters['density']
   declare profileExponent: CloudLayerParameters['profileExponent']
+  declare baseRelief: CloudLayerParameters['baseRelief']
   declare shapeAmount: CloudLayerParameters['shapeAmount']
   declare detailAmount: CloudLayerParameters['detailAmount']
   declare weatherScale: CloudLayerParameters['weatherScale']

@@ -2,7 +2,7 @@ import type { CloudLayerParameters } from './CloudLayer'
 import { densityForm } from '../density/formConstants'
 
 /** Vectors that a layer takes in the uniform array of all layers. */
-export const LAYER_STRIDE = 26
+export const LAYER_STRIDE = 27
 
 /** Periods of a layer's look-ups of noise, for a layer 1200 m thick. */
 export const noisePeriods = {

@@ -28,12 +28,14 @@ export interface MeanColumn {
 
 /** Strength that a column needs at a height: `neededStrength` of density/tsl/heightForm.ts. */
 export function neededStrength(
-  { profileExponent, anvil }: CloudLayerParameters,
+  { profileExponent, baseRelief, anvil }: CloudLayerParameters,
   height: number
 ): number {
   const { top, inversion, inversionStrength } = heightForm
-  const { tower, towerHeights, anvil: needed, anvilHeights, overshoot } = heightForm
+  const { tower, towerHeights, anvil: needed, anvilHeights, overshoot, relief } = heightForm
+  const base = baseRelief > 0 ? relief * Math.max(1 - height / baseRelief, 0) ** 2 : 0
   const column =
+    base +
     top * Math.max(height, 1e-4) ** profileExponent +
     inversionStrength * Math.max(height - inversion, 0) ** 2
   const end = Math.max(height - anvilHeights[0], 0) / (1 - anvilHeights[0])

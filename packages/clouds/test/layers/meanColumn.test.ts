@@ -130,14 +130,30 @@ describe('functions of the height', () => {
   const parametersOf = (parameters: Partial<CloudLayerParameters>): CloudLayerParameters =>
     new CloudLayer(parameters).parameters
 
-  it('need no strength at the base, and more with every metre where there is no anvil', () => {
+  it('need no strength at a flat base, and more with every metre above its relief where there is no anvil', () => {
     for (const name of cloudPresetNames) {
       const { parameters } = cloudPreset(name).at(0)
-      expect(neededStrength(parameters, 0)).toBeLessThan(0.05)
-      if (parameters.anvil > 0) continue
-      const needed = Array.from({ length: 50 }, (_, i) => neededStrength(parameters, i / 49))
+      const { anvil, baseRelief: lowest } = parameters
+      if (lowest === 0) expect(neededStrength(parameters, 0)).toBeLessThan(0.05)
+      if (anvil > 0) continue
+      const heights = Array.from({ length: 50 }, (_, i) => lowest + (1 - lowest) * (i / 49))
+      const needed = heights.map(height => neededStrength(parameters, height))
       expect(needed).toEqual(needed.toSorted((a, b) => a - b))
     }
+  })
+
+  it('raise the bases of weak columns where there is relief', () => {
+    const layer = parametersOf({ baseRelief: 0.4 })
+    const baseOf = (strength: number): number =>
+      Array.from({ length: 400 }, (_, i) => i / 1000).find(
+        height => neededStrength(layer, height) < strength
+      )!
+    const bases = [2, 3, 4, 5.5].map(baseOf)
+    expect(bases).toEqual(bases.toSorted((a, b) => b - a))
+    expect(bases[0]).toBeGreaterThan(0.1)
+    expect(bases[3]).toBe(0)
+    const flat = parametersOf({})
+    expect(neededStrength(layer, 0.4)).toBe(neededStrength(flat, 0.4))
   })
 
   it('let towers spread into an anvil, below what overshoots', () => {

@@ -268,7 +268,14 @@ describe('cloudAmbient', () => {
 })
 
 describe('litGround', () => {
-  const cloud = { depthThrough: 40, layered: 0, radius: 5000, altitude: 800, cosLight: 0.7 }
+  const cloud = {
+    depthThrough: 40,
+    layered: 0,
+    radius: 5000,
+    altitude: 800,
+    cosLight: 0.7,
+    albedo: 0.1
+  }
   const lit = (changes: Partial<typeof cloud>): number => litGround(phase, { ...cloud, ...changes })
 
   it('is dark below the base of a storm, less so farther up and under a low light, and hardly below a small cloud', () => {
@@ -278,6 +285,13 @@ describe('litGround', () => {
     expect(lit({ radius: 400, altitude: 1200 })).toBeGreaterThan(0.9)
     expect(lit({ depthThrough: 5 })).toBeGreaterThan(lit({}) + 0.2)
     expect(lit({ depthThrough: 0 })).toBe(1)
-    expect(lit({ layered: 1 })).toBe(1)
+  })
+
+  it('is what comes through a deck, times the light that goes to and fro over snow', () => {
+    const grey = lit({ layered: 1, depthThrough: 10 })
+    expect(grey).toBeLessThan(0.3)
+    expect(lit({ layered: 1, depthThrough: 10, altitude: 8000 })).toBeCloseTo(grey, 12)
+    expect(lit({ layered: 1, depthThrough: 10, albedo: 0.8 })).toBeGreaterThan(2 * grey)
+    expect(lit({ layered: 1, depthThrough: 10, albedo: 1 })).toBeGreaterThan(0.99)
   })
 })

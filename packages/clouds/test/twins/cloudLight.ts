@@ -211,15 +211,17 @@ export interface GroundShade {
   radius: number
   altitude: number
   cosLight: number
+  albedo: number
 }
 
-/** Part of the ground's light that is left below a cloud: `litGround` of light/tsl/cloudLight.ts, by the angle that the disc in shade fills. */
+/** Part of the ground's light that is left below a cloud: `litGround` of light/tsl/cloudLight.ts, by the angle that the disc in shade fills and the sum of all bounces. */
 export function litGround(
   phase: CloudPhaseParameters,
-  { depthThrough, layered, radius, altitude, cosLight }: GroundShade
+  { depthThrough, layered, radius, altitude, cosLight, albedo }: GroundShade
 ): number {
   const cosine = Math.max(Math.abs(cosLight), 0.12)
   const passed = eddingtonDiffuse(depthThrough * cosine, 1 - scalePhase(phase).moments[1])
   const disc = Math.sin(Math.atan2(radius, altitude / cosine)) ** 2
-  return 1 - (1 - layered) * disc * (1 - passed)
+  const left = passed / (1 - albedo * layered * (1 - passed))
+  return 1 - (layered + (1 - layered) * disc) * (1 - left)
 }

@@ -4,7 +4,8 @@ import { billowForm } from '../formConstants'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
 import { ENCODING_SCALE } from '../../noise/noiseRecipes'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import { inLattice, type LayerNodes } from './layer'
+import { inLattice } from './inLattice'
+import type { LayerNodes } from './layer'
 
 /** Level of detail for a footprint; 0 where texels are wider. */
 export const levelOf = (footprint: Float, texel: Float | number): Float =>

@@ -7,8 +7,8 @@ import type { LayerNodes } from './layer'
 
 /**
  * Strength that a column needs for cloud at a height: 0 at the base, so that bases are flat, and more with
- * every metre, so that tops are as high as their columns are strong. Under an anvil towers are narrow, and
- * spread into it.
+ * every metre, so that tops are as high as their columns are strong. With relief, bases of weak columns are higher. Under an
+ * anvil towers are narrow, and spread into it.
  *
  * @param height - ĥ in the layer, in [0, 1].
  * @see Siebesma et al. 2003, "A large eddy simulation intercomparison study of shallow cumulus convection" §4,
@@ -16,11 +16,13 @@ import type { LayerNodes } from './layer'
  */
 export function neededStrength(layer: LayerNodes, height: Float): Float {
   const above = height.sub(heightForm.inversion).max(0).toConst()
+  const below = height.mul(layer.perBaseRelief).oneMinus().max(0).toConst()
   const column = height
     .max(1e-4)
     .pow(layer.profileExponent)
     .mul(heightForm.top)
     .add(above.mul(above).mul(heightForm.inversionStrength))
+    .add(below.mul(below).mul(layer.relief))
   const needed = column.toVar() as Float
   If(layer.anvil.greaterThan(0), () => {
     const { tower, towerHeights, anvil, anvilHeights, overshoot } = heightForm

@@ -4,25 +4,10 @@ import type { CloudField } from '../CloudField'
 import { hasStorms } from '../kinds'
 import { latticeRotations, layerRotation } from '../lattice'
 import { LAYER_STRIDE, MESOSCALE_PER_REGIONS, noisePeriods } from '../../layers/layerUniforms'
-import {
-  loop,
-  type Bool,
-  type Float,
-  type Int,
-  type Vec2,
-  type Vec3,
-  type Vec4
-} from '../../tsl-types'
+import { loop, type Bool, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
 
 /** Place in a lattice of noise, in its periods, of a displacement in the mapped space [m]. */
 export type Lattice = (displacement: Vec3) => Vec3
-
-/**
- * Displacement in a lattice by two numbers: its third component has none of its own, since where the lattice
- * stands upright it is horizontal.
- */
-export const inLattice = (displacement: Vec2): Vec3 =>
-  vec3(displacement, displacement.x.sub(displacement.y).mul(Math.SQRT1_2))
 
 /** A layer's uniforms: names and units of `CloudLayerParameters` where they are the same. */
 export interface LayerNodes {
@@ -37,6 +22,9 @@ export interface LayerNodes {
   coverage: Float
   density: Float
   profileExponent: Float
+  /** Reciprocal of the height in the layer up to which bases rise, and strength needed at height 0 [–]. */
+  perBaseRelief: Float
+  relief: Float
   shapeAmount: Float
   detailAmount: Float
   densityGrowth: Float
@@ -106,6 +94,7 @@ export function layerAt(field: CloudField, index: Int, known?: number): LayerNod
   const read = (slot: number): Vec4 => field.array.element(start.add(int(slot)))
   const once = (slot: number): Vec4 => read(slot).toConst()
   const [extent, form, shear, kind, column, edges, periods] = [0, 1, 18, 19, 20, 21, 22].map(once)
+  const bases = once(23)
   const lattice =
     (slot: number): Lattice =>
     v => {
@@ -126,6 +115,8 @@ export function layerAt(field: CloudField, index: Int, known?: number): LayerNod
     coverage: extent.z,
     density: extent.w,
     profileExponent: form.x,
+    perBaseRelief: bases.x,
+    relief: bases.y,
     shapeAmount: form.y,
     detailAmount: form.z,
     perShapePeriod: form.w,
@@ -134,7 +125,7 @@ export function layerAt(field: CloudField, index: Int, known?: number): LayerNod
     detailLattice: lattice(6),
     weatherLattice: lattice(9),
     fieldLattice: lattice(12),
-    mesoscaleLattice: lattice(23),
+    mesoscaleLattice: lattice(24),
     regionLattice: lattice(15),
     displacementInFields: v => turn(12, v),
     directionInFields: v => turn(12, v).normalize(),

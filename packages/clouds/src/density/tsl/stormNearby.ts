@@ -12,7 +12,8 @@ import {
   type Vec3
 } from '../../tsl-types'
 import { stormPlaces } from '../stormForm'
-import { inLattice, type LayerNodes } from './layer'
+import { inLattice } from './inLattice'
+import type { LayerNodes } from './layer'
 
 // The search for the nearest storm, which is long: samples near each other share one.
 

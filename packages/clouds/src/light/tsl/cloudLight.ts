@@ -89,25 +89,28 @@ export interface GroundShadeNodes {
   altitude: Float
   /** The light against the local up. */
   cosLight: Float
+  /** Albedo of the ground, in [0, 1]. */
+  albedo: Float
 }
 
 /** Cosine of the lowest light whose rays grow longer, and shadows fall farther aside, with its height. */
 export const LOWEST_COSINE = 0.12
 
 /**
- * Part of the ground's light that is left below a cloud, in [0, 1]: ground in its shade is dark. An isolated cloud lets Eddington's
- * transmittance 1/(1 + ¾ (1 − g′) τ′) through to a disc of its own size, which is so far away along the light and fills r²/(r² + d²) of
- * the view down (form factor of a disc). Below decks all is left: march and mean decks agree only by this (e2e/gpu/clouds/world).
- * Twin: test/twins/cloudLight.ts
+ * Part of the ground's light that is left below a cloud, in [0, 1]: ground in its shade is dark. A cloud lets Eddington's
+ * transmittance t = 1/(1 + ¾ (1 − g′) τ′) through. Below an isolated one that falls on a disc of its own size, which is so far away along
+ * the light and fills r²/(r² + d²) of the view down (form factor of a disc); below a deck, on all of the view. Between deck and
+ * ground of albedo A light goes to and fro: t/(1 − A (1 − t)) is left. Twin: test/twins/cloudLight.ts
  */
 export function litGround(
   light: CloudLight,
-  { depthThrough, layered, radius, altitude, cosLight }: GroundShadeNodes
+  { depthThrough, layered, radius, altitude, cosLight, albedo }: GroundShadeNodes
 ): Float {
   const cosine = cosLight.abs().max(LOWEST_COSINE).toConst() as Float
-  const slab = light.oneMinusAsymmetry.mul(0.75).mul(depthThrough).mul(cosine)
+  const kept = albedo.mul(layered).oneMinus()
+  const slab = light.oneMinusAsymmetry.mul(0.75).mul(depthThrough).mul(cosine).mul(kept).toConst()
   const distance = altitude.div(cosine.mul(radius)).toConst()
-  const shaded = layered.oneMinus().div(distance.mul(distance).add(1))
+  const shaded = layered.mix(distance.mul(distance).add(1).reciprocal(), 1)
   return slab.div(slab.add(1)).mul(shaded).oneMinus()
 }
 

@@ -37,6 +37,10 @@ export function lightAt({ field, shadows }: ShadingContext, { up }: CloudSample)
   return { direction, isMoonlit, isMapped, cosine }
 }
 
+/** Albedo of the ground in green light. */
+export const groundAlbedo = ({ view }: CloudField): Float =>
+  (view.air.uniforms.groundAlbedo as unknown as Vec4).y
+
 /** Source function of a place towards the viewpoint: the light that it scatters there. */
 export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudShares {
   const { light } = context
@@ -84,7 +88,12 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     cosView,
     resolved
   })
-  const below = litGround(light, { ...lit, ...sample, radius: cloudWidth.div(2) })
+  const below = litGround(light, {
+    ...lit,
+    ...sample,
+    radius: cloudWidth.div(2),
+    albedo: groundAlbedo(context.field)
+  })
   return {
     direct: direct.mul(cast),
     sky: ambient.sky,

@@ -3,7 +3,7 @@ import { float, mix, vec3, vec4 } from 'three/tsl'
 import type { CloudSample } from '../../density/tsl/sample'
 import { cloudAmbientShares, cloudSource, litGround } from '../../light/tsl/cloudLight'
 import { henyeyGreenstein, singlePhase } from '../../light/tsl/cloudPhase'
-import { lightAt, shade } from '../../light/tsl/lighting'
+import { groundAlbedo, lightAt, shade } from '../../light/tsl/lighting'
 import type { ShadingContext } from '../../light/tsl/shadingContext'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'
 import { DIFFRACTED } from '../fallForm'
@@ -100,7 +100,7 @@ export function lightPrecipitation(
   const hidden = mix(fall.mul(fall).add(1).reciprocal(), 1, layered)
   const sky = mix(0.5, under.sky, hidden)
   const ground = mix(0.5, under.ground, hidden).mul(
-    litGround(light, { ...nodes, ...sample, radius })
+    litGround(light, { ...nodes, ...sample, radius, albedo: groundAlbedo(field) })
   )
   const shares = vec3(often.max(0).mul(cast), sky, ground).mul(weight).toConst() as Vec3
   return shade(field, sample, shares, once.mul(cast))
