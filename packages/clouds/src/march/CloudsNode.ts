@@ -293,9 +293,10 @@ export class CloudsNode extends AtmosphereNode {
     field.depthScale.value = light.nodes.depthScale.value
     field.update(view, this.#time ?? frame.time)
     const version = light.texture.version + (this.#precipitation?.update(field, view) ?? 0)
-    this.shadows.update(renderer, view, this.castsInto.size > 0)
     this.passes.setSize(width, height, this.#quality.block)
     this.#frame.next(camera, view, field, this.#quality.block, this.accumulates, version)
+    if (this.#frame.hasNewWeather) this.shadows.forget()
+    this.shadows.update(renderer, view, this.castsInto.size > 0)
     for (const screen of this.screens) screen.prepareShadows?.(renderer, view, frame)
     this.passes.render(renderer, view.up)
     this.#exposure.value = 1 / this.#frame.gain.value

@@ -3,9 +3,9 @@ import type { PerspectiveCamera } from 'three'
 import type { AtmosphereView } from '@welkin/atmosphere'
 import { viewpointMapped, type CloudField } from '../density/CloudField'
 import { CloudLayers } from '../layers/CloudLayers'
-import { LAYER_STRIDE } from '../layers/layerUniforms'
 import { nightGain } from '../light/NightLight'
 import { vec4Array } from '../tsl-types'
+import { cloudForms, cloudInputs, formChange } from './cloudChange'
 import { FAR_AWAY } from './tsl/layerBoundaries'
 import { matrix3, matrix4, number, vector2 } from '../uniforms'
 
@@ -62,6 +62,13 @@ const CUT_METRES = 300
 const CLOUD_CUT = 500
 
 /**
+ * Change of the clouds' form within a frame after which history is rejected, and in a round of frames the one from which
+ * history has no tolerance: see `formChange`. Greater: clouds of the weather before shine through for seconds (*Presets*); smaller:
+ * flicker while weather changes slowly (*Cumulus*, while "Coverage" is dragged).
+ */
+const FORM_CUT = 0.1
+
+/**
  * Change of the gain within a frame after which history is rejected, as a factor. Greater: ghosts of the day
  * by night (*Cumulus*, "Hour").
  */
@@ -84,31 +91,6 @@ const NO_MOVE = 1e-12
 
 const isSame = (values: readonly number[], before: readonly number[]): boolean =>
   values.every((value, i) => Math.abs(value - before[i]) <= 1e-9 * Math.abs(value))
-
-/** Components of a layer's vector that neither the camera nor the wind moves. */
-const formOf = ({ x, y, z, w }: Vector4, slot: number): number[] =>
-  slot < 3 || slot > 18 ? [x, y, z, w] : []
-
-/** All that shapes and lights the clouds, as numbers to compare with the last frame's. */
-function cloudInputs({ values, night, ambient }: CloudField, lightVersion: number): number[] {
-  const { moonDirection, moonIrradiance, skyRadiance } = night
-  const light = [moonDirection, moonIrradiance, skyRadiance]
-  return [
-    ...values.flatMap((vector, i) => formOf(vector, i % LAYER_STRIDE)),
-    ...light.flatMap(({ value }) => value.toArray()),
-    ambient.value,
-    lightVersion
-  ]
-}
-
-/** Vectors of a layer before its last lattice, which camera and wind move. */
-const FORM_SLOTS = LAYER_STRIDE - 3
-
-/** Form of the clouds, without what camera and wind move, as numbers to compare with the last frame's. */
-const cloudForms = ({ values }: CloudField): number[] =>
-  values.flatMap((vector, i) =>
-    i % LAYER_STRIDE < FORM_SLOTS ? formOf(vector, i % LAYER_STRIDE) : []
-  )
 
 const _projection = new Matrix4()
 const _toPrevious = new Matrix4()
@@ -162,6 +144,10 @@ export class FrameUniforms {
   readonly unsureUntil = number(FAR_AWAY)
   /** Most accumulated samples of a pixel. */
   readonly maxSamples = number(1)
+  /** True where the clouds' form has changed so much since the last frame that nothing of before is of use. */
+  hasNewWeather = false
+  /** Share of history's tolerance that changes of the clouds' form leave, in [0, 1]. */
+  readonly steadiness = number(1)
   /** Half width of the variance clip [standard deviations]. */
   readonly clipDeviations = number(1)
   /** Gain of stored light, that of light which is not exposed yet, and the former's ratio to the last frame's, by which history is multiplied. */
@@ -179,8 +165,9 @@ export class FrameUniforms {
   /** The last frame's `cloudInputs`, and its view and projection matrices. */
   #inputs: readonly number[] = []
   #matrices: readonly number[] = []
-  /** The last frame's `cloudForms`. */
+  /** The last frame's `cloudForms`, and how they have changed of late. */
   #forms: readonly number[] = []
+  #formChange = 0
   /** Relative motion of camera and clouds since the last frame [m]. */
   #speed = 0
   /** Frames until history has forgotten what was before the last change of light or clouds. */
@@ -222,16 +209,21 @@ export class FrameUniforms {
     this.#stored = stored
 
     viewpointMapped(view, _position)
-    const isCut = !usesHistory || this.#isCut(view.height, field)
+    const frames = pixelsOf(block)
+    const forms = cloudForms(field)
+    const change = formChange(forms, this.#forms)
+    this.#formChange = Math.min(this.#formChange * (1 - 1 / frames) + change, FORM_CUT)
+    this.steadiness.value = 1 - this.#formChange / FORM_CUT
+    this.hasNewWeather = change > FORM_CUT
+    const isCut = !usesHistory || this.hasNewWeather || this.#isCut(view.height, field)
+    if (isCut) this.#formChange = 0
     this.hasHistory.value = isCut ? 0 : 1
     const isAtRest = this.#setReprojection(view, field)
-    const forms = cloudForms(field)
     const isKnown = !isCut && isSame(forms, this.#forms)
     const known = this.#speed / (BLOCK_PART * block * field.pixelAngle.value)
     this.unsureUntil.value = isKnown ? known : FAR_AWAY
     this.turn.value = this.#count % ROUND
     this.#forms = forms
-    const frames = pixelsOf(block)
     this.#countForgetting(isCut, frames, view.lightDirection, cloudInputs(field, lightVersion))
     const matrices = [...view.viewToMapped.elements, ...projection.elements]
     const isStill = !isCut && isAtRest && this.#forgetting <= 0 && isSame(matrices, this.#matrices)

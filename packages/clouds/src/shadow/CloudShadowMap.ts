@@ -167,7 +167,7 @@ export class CloudShadowMap {
     this.#light.copy(isMoonlit ? night.moonDirection.value : view.lightDirection)
     this.#isNear = view.height <= HIGHEST
     if (view.height > (castsIntoAir ? HIGHEST_IN_AIR : HIGHEST)) {
-      this.#forget()
+      this.forget()
     } else {
       this.#draw(renderer, view, radius)
     }
@@ -328,13 +328,13 @@ export class CloudShadowMap {
     this.#rooms.push(room)
     target.setSize(target.width, room.first + ROOM_ROWS)
     this.nodes.scale.value.y = SIZE / target.height
-    this.#forget()
+    this.forget()
     this.#updateNodes()
     return room
   }
 
-  /** Has all cascades drawn anew. */
-  #forget(): void {
+  /** Has all cascades drawn anew in the next update. */
+  forget(): void {
     for (const cascade of this.#cascades) cascade.isDrawn = false
     this.#current = null
   }

@@ -1,0 +1,64 @@
+import type { Vector4 } from 'three'
+import type { CloudField } from '../density/CloudField'
+import { LAYER_STRIDE } from '../layers/layerUniforms'
+
+/** Components of a layer's vector that neither the camera nor the wind moves. */
+const formOf = ({ x, y, z, w }: Vector4, slot: number): number[] =>
+  slot < 3 || slot > 18 ? [x, y, z, w] : []
+
+/** Vectors of a layer before its last lattice, which camera and wind move. */
+const FORM_SLOTS = LAYER_STRIDE - 3
+
+/** All that shapes and lights the clouds, as numbers to compare with the last frame's. */
+export function cloudInputs(
+  { values, night, ambient }: CloudField,
+  lightVersion: number
+): readonly number[] {
+  const { moonDirection, moonIrradiance, skyRadiance } = night
+  const light = [moonDirection, moonIrradiance, skyRadiance]
+  return [
+    ...values.flatMap((vector, i) => formOf(vector, i % LAYER_STRIDE)),
+    ...light.flatMap(({ value }) => value.toArray()),
+    ambient.value,
+    lightVersion
+  ]
+}
+
+/** Form of the clouds, without what camera and wind move: of each layer, vectors one after the other. */
+export const cloudForms = ({ values }: CloudField): readonly number[] =>
+  values.flatMap((vector, i) =>
+    i % LAYER_STRIDE < FORM_SLOTS ? formOf(vector, i % LAYER_STRIDE) : []
+  )
+
+/** Numbers of a layer among `cloudForms`. */
+const LAYER_NUMBERS = 28
+
+/** Difference of two vectors over the greatest component of either, in [0, 2]. */
+function relativeChange(a: readonly number[], b: readonly number[]): number {
+  const most = Math.max(...a.map(Math.abs), ...b.map(Math.abs))
+  return most && Math.max(...a.map((value, i) => Math.abs(value - b[i]))) / most
+}
+
+/**
+ * Change of the clouds' form between two frames: the greatest of any layer's coverage, of its altitude in thicknesses, and of what
+ * else shapes it, as a part of that.
+ *
+ * @param now - By `cloudForms`.
+ * @param before - The same of the last frame; empty for the first one.
+ */
+export function formChange(now: readonly number[], before: readonly number[]): number {
+  let most = 0
+  for (let i = 0; i < before.length; i += LAYER_NUMBERS) {
+    const [a, b] = [now, before].map(forms => forms.slice(i, i + LAYER_NUMBERS))
+    const [base, perThickness, coverage] = a
+    // What covers nothing is not seen to change.
+    if (Math.max(coverage, b[2]) === 0) continue
+    most = Math.max(most, Math.abs(base - b[0]) * perThickness, Math.abs(coverage - b[2]))
+    // Thickness, density and the period of the shape each by itself; all others with those of their vector, since some are often 0.
+    for (const k of [1, 3, 7]) most = Math.max(most, relativeChange([a[k]], [b[k]]))
+    for (let k = 4; k < LAYER_NUMBERS; k += 4) {
+      most = Math.max(most, relativeChange(a.slice(k, k + 4), b.slice(k, k + 4)))
+    }
+  }
+  return most
+}
