@@ -24,7 +24,8 @@ export function encodePhases(
   const numbers = rows.flat().flatMap(color => {
     const [red, green, blue] = color.map(value => Math.log2(value) * LOG_STEPS)
     const stored = Math.round(green)
-    return [stored, ...[red, blue].map(value => Math.round((value - stored) / colorStep))]
+    const stepsOver = (value: number): number => Math.round((value - stored) / colorStep)
+    return [stored, stepsOver(red), stepsOver(blue)]
   })
   return numbers
     .map((value, at) => characters(value - expectedNumber(numbers, at, rows[0].length)))

@@ -138,7 +138,7 @@ export function broadleaf(kind: keyof typeof SHAPES): BufferGeometry {
       parts.push(spray.setAttribute('color', new Float32BufferAttribute(colors, 3)))
     }
   }
-  const core = ball(1).scale(0.5 * radius, 0.36 * crownHeight, 0.5 * radius)
+  const core = ball(1).scale(0.3 * radius, 0.28 * crownHeight, 0.3 * radius)
   parts.push(painted(core.translate(0, middle.y + 0.1, 0), SHADE))
   return mergeGeometries(parts)
 }

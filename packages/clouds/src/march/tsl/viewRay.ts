@@ -41,8 +41,7 @@ export interface FrameInputs {
 }
 
 /** Normalized device coordinates of a place in the picture, and 1. */
-export const ndcAt = ({ x, y }: Vec2): Vec3 =>
-  vec3(x.mul(2).sub(1), y.mul(-2).add(1), 1).toConst() as Vec3
+export const ndcAt = ({ x, y }: Vec2): Vec3 => vec3(x.mul(2).sub(1), y.mul(-2).add(1), 1).toConst()
 
 /**
  * Place of a ray's direction in the last frame's picture, from 0 to 1.
