@@ -174,7 +174,6 @@ export class CloudsNode extends AtmosphereNode {
 
   /**
    * Changes some settings.
-   *
    * @throws If one is unknown or out of range; then nothing has changed.
    */
   set(settings: Pick<CloudsOptions, (typeof SETTINGS)[number]>): this {

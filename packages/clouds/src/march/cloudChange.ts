@@ -43,8 +43,8 @@ function relativeChange(a: readonly number[], b: readonly number[]): number {
  * Change of the clouds' form between two frames: the greatest of any layer's coverage, of its altitude in thicknesses, and of what
  * else shapes it, as a part of that.
  *
- * @param now - By `cloudForms`.
- * @param before - The same of the last frame; empty for the first one.
+ * @param now - Forms by `cloudForms`.
+ * @param before - Forms of the last frame; empty for the first one.
  */
 export function formChange(now: readonly number[], before: readonly number[]): number {
   let most = 0
