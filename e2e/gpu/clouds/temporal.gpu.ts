@@ -195,7 +195,7 @@ gpuTest(
       t,
       async shared => {
         const sky = new Sky(shared, 'medium', narrow.fieldOfView)
-        // Three rounds of a block.
+        // Four rounds of a block.
         sky.node.quality = { ...cloudQualities.medium, block: 4 }
         const { frame } = sky.node.passes.viewRays
         const next = frame.next.bind(frame)
@@ -203,7 +203,7 @@ gpuTest(
         const { shadows } = sky.node
         const update = shadows.update.bind(shadows)
         for (const [height, pitch, frames] of [
-          [2, 0.6, 48],
+          [2, 0.6, 64],
           [3e6, -1.3, 20]
         ]) {
           sky.camera.position.y = height

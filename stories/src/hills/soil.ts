@@ -127,12 +127,13 @@ function fields(place: Node<'vec2'>, grass: Node<'vec3'>): Node<'vec3'> {
  * @param noise - Noise about ±1 by its period [m].
  */
 function grown(color: Node<'vec3'>, noise: (period: number) => Node<'float'>): Node<'vec3'> {
-  const blades = noise(0.47).toConst()
-  const tufts = noise(2.7).add(blades.mul(0.9)).toConst()
-  const dry = smoothstep(0.1, 0.75, blades.sub(noise(6.3)))
-  const low = smoothstep(-0.1, -0.75, tufts)
-  const lit = color.mul(blades.mul(0.7).add(tufts.mul(0.35)).add(1).max(0.25))
-  return mix(mix(lit, vec3(...STRAW), dry.mul(0.4)), vec3(...BETWEEN), low.mul(0.65))
+  // Sums of periods without a common multiple: one alone shows as rows.
+  const blades = noise(0.47).add(noise(1.31)).mul(0.6).toConst()
+  const tufts = noise(4.3).add(noise(11.9)).mul(0.6).add(blades.mul(0.6)).toConst()
+  const dry = smoothstep(0.2, 0.9, blades.sub(noise(17)))
+  const low = smoothstep(-0.3, -1.1, tufts)
+  const lit = color.mul(blades.mul(0.5).add(tufts.mul(0.3)).add(1).max(0.3))
+  return mix(mix(lit, vec3(...STRAW), dry.mul(0.4)), vec3(...BETWEEN), low.mul(0.5))
 }
 
 /**

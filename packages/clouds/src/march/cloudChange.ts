@@ -2,9 +2,13 @@ import type { Vector4 } from 'three'
 import type { CloudField } from '../density/CloudField'
 import { LAYER_STRIDE } from '../layers/layerUniforms'
 
+/** First of a layer's vectors that camera and wind move, and their number. */
+const FIRST_MOVED_SLOT = 3
+const MOVED_SLOTS = 16
+
 /** Components of a layer's vector that neither the camera nor the wind moves. */
 const formOf = ({ x, y, z, w }: Vector4, slot: number): number[] =>
-  slot < 3 || slot > 18 ? [x, y, z, w] : []
+  slot < FIRST_MOVED_SLOT || slot >= FIRST_MOVED_SLOT + MOVED_SLOTS ? [x, y, z, w] : []
 
 /** Vectors of a layer before its last lattice, which camera and wind move. */
 const FORM_SLOTS = LAYER_STRIDE - 3
@@ -31,7 +35,7 @@ export const cloudForms = ({ values }: CloudField): readonly number[] =>
   )
 
 /** Numbers of a layer among `cloudForms`. */
-const LAYER_NUMBERS = 28
+const LAYER_NUMBERS = 4 * (FORM_SLOTS - MOVED_SLOTS)
 
 /** Difference of two vectors over the greatest component of either, in [0, 2]. */
 function relativeChange(a: readonly number[], b: readonly number[]): number {

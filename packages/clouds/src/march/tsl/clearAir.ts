@@ -1,9 +1,16 @@
 import { If, exp2, float, int, vec2 } from 'three/tsl'
 import { encodeDistance } from '../../temporal/tsl/packing'
-import { loop, type Float, type LevelTexture, type Vec2, type Vec3 } from '../../tsl-types'
+import {
+  loop,
+  type Float,
+  type LevelTexture,
+  type Mat3,
+  type Vec2,
+  type Vec3
+} from '../../tsl-types'
 import { ROUND } from '../FrameUniforms'
 import { FAR_AWAY } from './layerBoundaries'
-import { placeBefore, type FrameInputs } from './viewRay'
+import type { FrameInputs } from './viewRay'
 
 // Clear air is where it was in the last frame: a ray begins at the first cloud that those around it have found, and one that
 // met none in the last frame ends behind the clouds of its neighbours. Tiles of rays take turns to be marched whole, and find what is
@@ -108,7 +115,9 @@ export function clearAir(
   const from = float(FAR_AWAY).toVar()
   const tile = block.div(TILE).floor().toConst() as Vec2
   const turn = tile.x.add(tile.y.mul(ROW_SHIFT)).add(frame.turn).mod(ROUND).round()
-  const { before, isInside } = placeBefore(frame, ndc)
+  const clipped = (frame.raysBefore as unknown as Mat3).mul(ndc).toConst() as Vec3
+  const before = clipped.xy.div(clipped.z.max(1e-9)).mul(vec2(0.5, -0.5)).add(0.5).toConst() as Vec2
+  const isInside = before.clamp(vec2(0), vec2(1)).equal(before).all().and(clipped.z.greaterThan(0))
   If(isInside.and(turn.greaterThan(0)).and(frame.unsureUntil.lessThan(FAR_AWAY)), () => {
     const middle = before.mul(frame.size).div(frame.block).floor().toConst() as Vec2
     const nearest = float(CLEAR).toVar()

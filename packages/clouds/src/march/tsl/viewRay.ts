@@ -5,7 +5,6 @@ import {
   getViewPosition,
   isBackgroundDepth,
   logarithmicDepthToViewZ,
-  vec2,
   vec3
 } from 'three/tsl'
 import type { Node, NodeBuilder, Renderer } from 'three/webgpu'
@@ -40,24 +39,9 @@ export interface FrameInputs {
   readonly depthAt: (uv: Vec2) => Float
 }
 
-/** Normalized device coordinates of a place in the picture, and 1. */
-export const ndcAt = ({ x, y }: Vec2): Vec3 => vec3(x.mul(2).sub(1), y.mul(-2).add(1), 1).toConst()
-
-/**
- * Place of a ray's direction in the last frame's picture, from 0 to 1.
- *
- * @param ndc - `PixelRay.ndc`.
- */
-export function placeBefore(frame: FrameUniforms, ndc: Vec3): { before: Vec2; isInside: Bool } {
-  const { xy, z } = (frame.raysBefore as unknown as Mat3).mul(ndc).toConst() as Vec3
-  const before = xy.div(z.max(1e-9)).mul(vec2(0.5, -0.5)).add(0.5).toConst() as Vec2
-  const isInside = before.clamp(vec2(0), vec2(1)).equal(before).all().and(z.greaterThan(0))
-  return { before, isInside }
-}
-
 /** View ray through a point of the image; to be called inside of a shader function. */
 export function viewRayAt({ field, frame }: FrameInputs, uv: Vec2): PixelRay {
-  const ndc = ndcAt(uv)
+  const ndc = vec3(uv.x.mul(2).sub(1), uv.y.mul(-2).add(1), 1).toConst()
   const rayView = (frame.rays as unknown as Mat3).mul(ndc).toConst() as Vec3
   const mapped = field.view.toMapped(rayView).toConst() as Vec3
   const length = mapped.length().toConst() as Float

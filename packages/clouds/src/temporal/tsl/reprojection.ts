@@ -1,6 +1,6 @@
 import { If, exp2, vec2, vec4 } from 'three/tsl'
 import type { Bool, Float, Mat3, Vec2, Vec3, Vec4 } from '../../tsl-types'
-import { ndcAt, placeBefore, type FrameInputs, type PixelRay } from '../../march/tsl/viewRay'
+import type { FrameInputs, PixelRay } from '../../march/tsl/viewRay'
 import { passesDepthTest, SAME_DISTANCE } from './depthTest'
 import { clampDistance, unpack } from './packing'
 import type { CloudTargets } from './renderTargets'
@@ -36,18 +36,6 @@ export interface ReprojectedHistory {
   readonly hasClouds: Bool
   /** Stationarity: 1 where neither clouds nor what was drawn have moved but by a turn of the camera, falling to 0 at a pixel's motion, and as the clouds' form changes. */
   readonly stationarity: Float
-}
-
-/**
- * History of a pixel whose cell is clear: where the pixel was before the camera's last turn. What is clear has no distance by which it could move.
- *
- * @param at - Place in the picture, from 0 to 1.
- * @returns `unpack`'s numbers; a count of 0, for no history, where that is outside of the picture.
- */
-export function historyOfClearPixel({ frame }: FrameInputs, history: CloudTargets, at: Vec2): Vec4 {
-  const { before, isInside } = placeBefore(frame, ndcAt(at))
-  const nearest = before.mul(frame.size).floor().add(0.5).div(frame.size)
-  return unpack(history.distances.sample(nearest).level(0)).mul(isInside.select(1, 0))
 }
 
 /**

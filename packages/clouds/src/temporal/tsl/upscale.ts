@@ -6,9 +6,9 @@ import { isClear, type Cell } from './cells'
 import { toHalf } from './ditheredHalf'
 import { cellPosition, estimate, type Estimate } from './estimate'
 import { interleavedNoise } from './noisePattern'
-import { encodeDistance, FARTHEST, pack } from './packing'
+import { encodeDistance, FARTHEST, pack, unpack } from './packing'
 import { CLEAR, type CloudTargets } from './renderTargets'
-import { historyOfClearPixel, reprojectHistory, type ReprojectedHistory } from './reprojection'
+import { reprojectHistory, type ReprojectedHistory } from './reprojection'
 import { varianceClip } from './varianceClip'
 
 /**
@@ -95,7 +95,7 @@ export function upscale(
     const cellLight = cells.light.sample(cellAt).level(0).toConst() as Vec4
     const before = vec4(0).toVar() as Vec4
     If(isClear(cellLight).and(frame.hasHistory.greaterThan(0)), () => {
-      before.assign(historyOfClearPixel(viewRays, history, middle))
+      before.assign(unpack(history.distances.sample(middle).level(0)))
     })
     // Clear around and clear before: one more sample of nothing.
     const clearSamples = before.z.sub(frame.block.mul(frame.block).reciprocal())
