@@ -25,7 +25,7 @@ export interface FallStretch {
   readonly end: Float
 }
 
-/** log₂ of where a marched ray ends: behind opaque clouds nothing is seen. @param distances - Of the clouds' points [m]. */
+/** log₂ of where a marched ray ends: behind opaque clouds nothing is seen. @param distances - Distances of the clouds' points [m]. */
 export const endOf = (marched: Vec4, { x, y, z, w }: Vec4): Float =>
   marched.z
     .greaterThan(0)
