@@ -179,5 +179,5 @@ gpuTest(
     dispose()
   },
   // The shaders that the test before has drawn with on both.
-  { backends: ['webgpu'], timeoutSeconds: 120 }
+  { backends: ['webgpu'], timeoutSeconds: 300 }
 )
