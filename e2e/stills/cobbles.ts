@@ -1,11 +1,6 @@
 import { GroundMaps } from '@welkin/terrain'
-import {
-  DataTexture,
-  LinearFilter,
-  LinearMipmapLinearFilter,
-  RepeatWrapping,
-  SRGBColorSpace
-} from 'three'
+import { SRGBColorSpace } from 'three'
+import { tileable } from '../../stories/src/mipmapped'
 
 /** Texels along the side, and stones along it. */
 const SIZE = 512
@@ -39,16 +34,6 @@ function cobble(x: number, y: number): { height: number; light: number } {
   return { height: Math.sqrt(1 - (1 - inside) ** 2), light }
 }
 
-function picture(bytes: Uint8Array): DataTexture {
-  const made = new DataTexture(bytes, SIZE, SIZE)
-  made.wrapS = made.wrapT = RepeatWrapping
-  made.minFilter = LinearMipmapLinearFilter
-  made.magFilter = LinearFilter
-  made.generateMipmaps = true
-  made.needsUpdate = true
-  return made
-}
-
 /** Maps of cobbles, 2 m wide and 6 cm deep, in place of grass. */
 export function cobbles(): GroundMaps {
   const stones = Array.from({ length: SIZE ** 2 }, (_, n) =>
@@ -76,10 +61,9 @@ export function cobbles(): GroundMaps {
     )
     relief.set([255 * height, 255 * (0.75 + 0.2 * (1 - light)), 0, 255], 4 * n)
   }
-  const albedo = picture(color)
+  const [albedo, normals, heights] = [color, normal, relief].map(bytes => tileable(bytes, SIZE))
   albedo.colorSpace = SRGBColorSpace
-  const heights = picture(relief)
   return new GroundMaps({
-    grass: { albedo, normal: picture(normal), height: heights, roughness: heights, relief: 0.06 }
+    grass: { albedo, normal: normals, height: heights, roughness: heights, relief: 0.06 }
   })
 }

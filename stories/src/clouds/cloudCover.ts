@@ -1,11 +1,5 @@
-import {
-  DataTexture,
-  ImageLoader,
-  LinearFilter,
-  LinearMipmapLinearFilter,
-  RedFormat,
-  RepeatWrapping
-} from 'three'
+import { ImageLoader, RedFormat, RepeatWrapping, type DataTexture } from 'three'
+import { mipmapped } from '../mipmapped'
 
 /** Cloud cover of the whole Earth, for `cloudWorldMap`: one channel, the share of the sky that is covered. */
 export async function cloudCover(): Promise<DataTexture> {
@@ -24,11 +18,7 @@ export async function cloudCover(): Promise<DataTexture> {
   const cover = new Uint8Array(width * height)
   // White clouds on nothing: what they cover is in alpha.
   for (let i = 0; i < cover.length; i++) cover[i] = data[4 * i + 3]
-  const texture = new DataTexture(cover, width, height, RedFormat)
+  const texture = mipmapped(cover, width, height, RedFormat)
   texture.wrapS = RepeatWrapping
-  texture.magFilter = LinearFilter
-  texture.minFilter = LinearMipmapLinearFilter
-  texture.generateMipmaps = true
-  texture.needsUpdate = true
   return texture
 }

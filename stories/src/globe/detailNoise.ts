@@ -1,7 +1,8 @@
-import type { DataTexture } from 'three'
+import { RedFormat, type DataTexture } from 'three'
 import { texture } from 'three/tsl'
 import type { Node } from 'three/webgpu'
-import { latticeHash, octaveTexture } from '../octaveTexture'
+import { tileable } from '../mipmapped'
+import { latticeHash, octaves, OCTAVES_SIDE } from '../octaves'
 
 function valueNoise(x: number, y: number, period: number): number {
   const x0 = Math.floor(x)
@@ -16,7 +17,8 @@ function valueNoise(x: number, y: number, period: number): number {
 
 /** A tileable texture of five octaves of noise about 0.5, the same on every run. */
 export function createNoiseTexture(): DataTexture {
-  const result = octaveTexture((x, y, period) => valueNoise(x, y, period) - 0.5, 140)
+  const bytes = octaves((x, y, period) => valueNoise(x, y, period) - 0.5, 140)
+  const result = tileable(bytes, OCTAVES_SIDE, RedFormat)
   result.anisotropy = 4
   return result
 }

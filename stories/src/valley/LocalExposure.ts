@@ -26,7 +26,7 @@ const TILES = [48, 27] as const
 const LEVELS = 12
 const STOPS = [-8, 4] as const
 
-/** Cells on each side of a tile that have a part in it, and the standard deviations of these parts [cells, stops]. */
+/** Cells on each side of a tile that have a part in it, of which every second is read, and the standard deviations of these parts [cells, stops]. */
 const REACH = 9
 const EVERY = 2
 const BLUR = 6
@@ -132,8 +132,9 @@ export class LocalExposure {
     this.#shift.value = Math.log2(luminanceScale / this.#kept)
   }
 
-  /** Keeps the picture that was just drawn in a luminance scale. */
+  /** Keeps the picture that was just drawn in a luminance scale, unless the next one is shown as it is. */
   update(renderer: Renderer, luminanceScale: number): void {
+    if (this.#strength.value === 0) return
     this.#kept = luminanceScale
     this.#passes[0].render(renderer, this.#cells)
     this.#passes[1].render(renderer, this.#grid)

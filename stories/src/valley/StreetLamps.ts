@@ -1,10 +1,8 @@
 import {
   CylinderGeometry,
-  DataTexture,
+  type DataTexture,
   Group,
   InstancedMesh,
-  LinearFilter,
-  LinearMipmapLinearFilter,
   Matrix4,
   RedFormat,
   SphereGeometry
@@ -12,6 +10,7 @@ import {
 import { diffuseColor, float, Fn, If, positionWorld, texture, uniform, vec2, vec3 } from 'three/tsl'
 import { MeshBasicNodeMaterial } from 'three/webgpu'
 import type { Node } from 'three/webgpu'
+import { mipmapped } from '../mipmapped'
 import { disposeMeshes } from '../scene'
 import { groundHeight, roadMiddle } from './ground'
 import { VILLAGE } from './places'
@@ -72,12 +71,7 @@ function illuminanceMap(lamps: readonly Lamp[]): DataTexture {
     }
   }
   const bytes = Uint8Array.from(sums, sum => 255 * Math.sqrt(Math.min(sum / MOST, 1)))
-  const map = new DataTexture(bytes, SIZE, SIZE, RedFormat)
-  map.magFilter = LinearFilter
-  map.minFilter = LinearMipmapLinearFilter
-  map.generateMipmaps = true
-  map.needsUpdate = true
-  return map
+  return mipmapped(bytes, SIZE, SIZE, RedFormat)
 }
 
 /** Lamps of the village: posts along its road, and one over each door. They light ground and walls from a map. */

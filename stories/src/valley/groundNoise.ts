@@ -1,5 +1,6 @@
 import { MathUtils, RGFormat, type DataTexture } from 'three'
-import { latticeHash, octaveTexture } from '../octaveTexture'
+import { tileable } from '../mipmapped'
+import { latticeHash, octaves, OCTAVES_SIDE } from '../octaves'
 
 /** Greatest difference of the noise from its mean [bytes], for the coarsest octave of unit height. */
 const CONTRAST = 147
@@ -74,20 +75,18 @@ function crownHeight(crowns: readonly Crown[], x: number, y: number, noise: numb
  * Its noise is of gradients: that of values has squares along the lattice, which on fields and slopes show as a net.
  */
 export function createGroundNoise(): DataTexture {
-  const result = octaveTexture(gradientNoise, CONTRAST, ASIDE)
-  const { data, width } = result.image as unknown as { data: Uint8Array; width: number }
+  const grain = octaves(gradientNoise, CONTRAST, ASIDE)
   const crowns = crownsOfWood()
-  const scale = CROWNS / width
-  const heights = Float32Array.from(data, (noise, i) =>
-    crownHeight(crowns, (i % width) * scale, Math.floor(i / width) * scale, noise / 127.5 - 1)
-  )
+  const scale = CROWNS / OCTAVES_SIDE
+  const heights = Float32Array.from(grain, (noise, i) => {
+    const [column, row] = [i % OCTAVES_SIDE, Math.floor(i / OCTAVES_SIDE)]
+    return crownHeight(crowns, column * scale, row * scale, noise / 127.5 - 1)
+  })
   const mean = heights.reduce((sum, height) => sum + height, 0) / heights.length
-  const texels = new Uint8Array(2 * data.length)
+  const texels = new Uint8Array(2 * grain.length)
   for (const [i, height] of heights.entries()) {
-    texels[2 * i] = data[i]
+    texels[2 * i] = grain[i]
     texels[2 * i + 1] = clamp(127.5 + (height - mean) * RISE, 0, 255)
   }
-  Object.assign(result, { format: RGFormat })
-  Object.assign(result.image, { data: texels })
-  return result
+  return tileable(texels, OCTAVES_SIDE, RGFormat)
 }

@@ -1,10 +1,4 @@
-import {
-  DataTexture,
-  LinearFilter,
-  LinearMipmapLinearFilter,
-  RGBAFormat,
-  UnsignedByteType
-} from 'three'
+import type { DataTexture } from 'three'
 import {
   attribute,
   float,
@@ -19,6 +13,7 @@ import {
   vec3
 } from 'three/tsl'
 import type { Node, NodeMaterial } from 'three/webgpu'
+import { mipmapped } from '../mipmapped'
 import { randomSequence } from '../random'
 
 /** Texels along an edge of each of the two halves of the picture. */
@@ -154,12 +149,7 @@ function createLeafTexture(): DataTexture {
     }
   }
   bareTwigs(bytes, random)
-  const picture = new DataTexture(bytes, 2 * SIZE, SIZE, RGBAFormat, UnsignedByteType)
-  picture.magFilter = LinearFilter
-  picture.minFilter = LinearMipmapLinearFilter
-  picture.generateMipmaps = true
-  picture.needsUpdate = true
-  return picture
+  return mipmapped(bytes, 2 * SIZE, SIZE)
 }
 
 /** Noise of pixels, in [0, 1]: what is finer than these covers as many of them as it would cover of one. */

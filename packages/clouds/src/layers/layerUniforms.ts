@@ -1,8 +1,11 @@
 import type { CloudLayerParameters } from './CloudLayer'
 import { densityForm } from '../density/formConstants'
 
-/** Vectors that a layer takes in the uniform array of all layers. */
+/** Vectors that a layer takes in the uniform array of all layers: `CloudField` writes them, `layerAt` reads them. */
 export const LAYER_STRIDE = 27
+
+/** Vectors of a layer that camera and wind move: from the first on, so many, and the last ones, of the mesoscale's lattice. */
+export const movedVectors = { first: 3, count: 16, last: 3 } as const
 
 /** Periods of a layer's look-ups of noise, for a layer 1200 m thick. */
 export const noisePeriods = {

@@ -1,17 +1,15 @@
 import type { Vector4 } from 'three'
 import type { CloudField } from '../density/CloudField'
-import { LAYER_STRIDE } from '../layers/layerUniforms'
+import { LAYER_STRIDE, movedVectors } from '../layers/layerUniforms'
 
-/** First of a layer's vectors that camera and wind move, and their number. */
-const FIRST_MOVED_SLOT = 3
-const MOVED_SLOTS = 16
+const { first, count, last } = movedVectors
 
-/** Components of a layer's vector that neither the camera nor the wind moves. */
+/** Components of a layer's vector, but for those from the first on that camera and wind move. */
 const formOf = ({ x, y, z, w }: Vector4, slot: number): number[] =>
-  slot < FIRST_MOVED_SLOT || slot >= FIRST_MOVED_SLOT + MOVED_SLOTS ? [x, y, z, w] : []
+  slot < first || slot >= first + count ? [x, y, z, w] : []
 
-/** Vectors of a layer before its last lattice, which camera and wind move. */
-const FORM_SLOTS = LAYER_STRIDE - 3
+/** Vectors of a layer before the last ones that camera and wind move. */
+const FORM_SLOTS = LAYER_STRIDE - last
 
 /** All that shapes and lights the clouds, as numbers to compare with the last frame's. */
 export function cloudInputs(
@@ -35,7 +33,7 @@ export const cloudForms = ({ values }: CloudField): readonly number[] =>
   )
 
 /** Numbers of a layer among `cloudForms`. */
-const LAYER_NUMBERS = 4 * (FORM_SLOTS - MOVED_SLOTS)
+const LAYER_NUMBERS = 4 * (FORM_SLOTS - count)
 
 /** Difference of two vectors over the greatest component of either, in [0, 2]. */
 function relativeChange(a: readonly number[], b: readonly number[]): number {

@@ -61,7 +61,7 @@ export class TilePyramid {
     return target
   }
 
-  /** Height at a place, linear between pixels: where no slope is asked for, of coarse levels. As {@link sample}. */
+  /** Height at a place, linear between pixels, where no slope is asked for; arguments as of {@link sample}. */
   heightAt(z: number, x: number, y: number, find: FindTile): number {
     this.#begin(find)
     const scale = this.size * 2 ** z

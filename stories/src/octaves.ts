@@ -1,14 +1,7 @@
-import {
-  DataTexture,
-  LinearFilter,
-  LinearMipmapLinearFilter,
-  MathUtils,
-  RedFormat,
-  RepeatWrapping
-} from 'three'
+import { MathUtils } from 'three'
 
-/** Texels along an edge. */
-const SIZE = 256
+/** Texels along an edge of what has octaves of noise. */
+export const OCTAVES_SIDE = 256
 /** Cells of the coarsest octave along an edge, and octaves. */
 const CELLS = 8
 const OCTAVES = 5
@@ -23,34 +16,28 @@ export function latticeHash(column: number, row: number, cells: number): number 
 }
 
 /**
- * A tileable texture of five octaves of noise about 0.5.
+ * Five octaves of noise about 127.5, as texels of a square that repeats, row by row.
  *
  * @param noise - Noise about 0 at a place among so many cells, after which it repeats.
  * @param contrast - Greatest difference from the mean, for a coarsest octave of unit height [bytes].
  * @param aside - Way from the lattice to the first texel [texels]: noise that is 0 on it must not be looked up there in every octave.
  */
-export function octaveTexture(
+export function octaves(
   noise: (x: number, y: number, cells: number) => number,
   contrast: number,
   aside = 0
-): DataTexture {
-  const data = new Uint8Array(SIZE * SIZE)
-  for (let y = 0; y < SIZE; y++) {
-    for (let x = 0; x < SIZE; x++) {
+): Uint8Array {
+  const bytes = new Uint8Array(OCTAVES_SIDE ** 2)
+  for (let y = 0; y < OCTAVES_SIDE; y++) {
+    for (let x = 0; x < OCTAVES_SIDE; x++) {
       let sum = 0
       for (let octave = 0; octave < OCTAVES; octave++) {
         const cells = CELLS * 2 ** octave
-        const [u, v] = [x, y].map(t => ((t + aside) / SIZE) * cells)
+        const [u, v] = [x, y].map(t => ((t + aside) / OCTAVES_SIDE) * cells)
         sum += noise(u, v, cells) / 2 ** octave
       }
-      data[y * SIZE + x] = MathUtils.clamp(127.5 + sum * contrast, 0, 255)
+      bytes[y * OCTAVES_SIDE + x] = MathUtils.clamp(127.5 + sum * contrast, 0, 255)
     }
   }
-  const result = new DataTexture(data, SIZE, SIZE, RedFormat)
-  result.wrapS = result.wrapT = RepeatWrapping
-  result.magFilter = LinearFilter
-  result.minFilter = LinearMipmapLinearFilter
-  result.generateMipmaps = true
-  result.needsUpdate = true
-  return result
+  return bytes
 }
