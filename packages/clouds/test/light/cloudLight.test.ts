@@ -12,6 +12,12 @@ import { aureolePhase, cloudPhase } from '../twins/cloudPhase'
 
 const unit = fc.double({ min: 0, max: 1, noNaN: true })
 const depths = fc.double({ min: -4, max: 5, noNaN: true }).map(Math.exp)
+/** Parts of a slab's depth, as often near either face as in between. */
+const parts = fc.oneof(
+  unit,
+  fc.double({ min: -12, max: 0, noNaN: true }).map(Math.exp),
+  fc.double({ min: -12, max: 0, noNaN: true }).map(logarithm => 1 - Math.exp(logarithm))
+)
 const { phase } = new CloudLightTable()
 const rule = gaussLegendre(200)
 
@@ -25,14 +31,14 @@ describe('cloud-light table', () => {
   it('is what the solver says between its texels, within 4 % of the light', () => {
     const solver = new SlabSolver(scalePhase(phase))
     fc.assert(
-      fc.property(unit, depths, fc.double({ min: 0.1, max: 1, noNaN: true }), (part, t, mu0) => {
+      fc.property(parts, depths, fc.double({ min: 0.1, max: 1, noNaN: true }), (part, t, mu0) => {
         const [exact] = solver.slab(t, [part * t]).fromBeam(mu0)
         const sampled = sampleBeamSource(table, part * t, t, mu0)
         const once = Math.exp((-part * t) / mu0) / (4 * Math.PI)
         const light = exact.s00 + once
         for (const key of ['s00', 's10', 's20', 's11', 's21', 's22'] as const) {
-          // 4.00 % in the thickest slab under the lowest sun, near its top; 2.9 % elsewhere.
-          expect(Math.abs(sampled[key] - exact[key]) / light).toBeLessThan(0.0402)
+          // 3.7 % in the thickest slab under the lowest sun, near its faces; 3 % elsewhere.
+          expect(Math.abs(sampled[key] - exact[key]) / light).toBeLessThan(0.04)
         }
       }),
       { numRuns: 100 }
