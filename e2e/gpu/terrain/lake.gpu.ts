@@ -36,7 +36,6 @@ gpuTest(
       pageMemory: 10,
       windSpeed: 2
     })
-    const lake = new Lake(terrain, { ...MIDDLE, radius: 4000, level: LEVEL })
     const sun = new SunDirectionalLight(atmosphere)
     const scene = new Scene()
     scene.background = new Color(0, 0, 0)
@@ -52,21 +51,29 @@ gpuTest(
     look(LEVEL + 4000, -90)
     atmosphere.sunDirection = ellipsoid.surfaceNormal(camera.position)
     terrain.update(renderer, camera, Infinity)
+    const ray = new Vector3()
+    /** Height of the ground over the water's level in a pixel [m]. */
+    const overWater = (column: number, row: number): number => {
+      const [x, y] = [(column + 0.5) / SIZE.width, (row + 0.5) / SIZE.height]
+      ray
+        .set(2 * x - 1, 1 - 2 * y, 0.5)
+        .unproject(camera)
+        .sub(camera.position)
+      return ellipsoid.heightAt(terrain.intersectRay(camera.position, ray)!) - LEVEL
+    }
+    // Rays hit the lake, too, once it is there.
+    const overs = Array.from({ length: SIZE.width * SIZE.height }, (_, i) =>
+      overWater(i % SIZE.width, Math.floor(i / SIZE.width))
+    )
+    const lake = new Lake(terrain, { ...MIDDLE, radius: 4000, level: LEVEL })
     const dry = await t.render(renderer, scene, camera, SIZE)
     scene.add(lake)
     const wet = await t.render(renderer, scene, camera, SIZE)
-    const ray = new Vector3()
     let water = 0
     let wrong = 0
     for (let row = 0; row < SIZE.height; row++) {
       for (let column = 0; column < SIZE.width; column++) {
-        const [x, y] = [(column + 0.5) / SIZE.width, (row + 0.5) / SIZE.height]
-        ray
-          .set(2 * x - 1, 1 - 2 * y, 0.5)
-          .unproject(camera)
-          .sub(camera.position)
-        const place = terrain.intersectRay(camera.position, ray)!
-        const over = ellipsoid.heightAt(place) - LEVEL
+        const over = overs[row * SIZE.width + column]
         const before = dry.at(column, row)
         const isWater = wet.at(column, row).some((value, n) => Math.abs(value - before[n]) > 1e-6)
         water += Number(isWater)
@@ -78,7 +85,13 @@ gpuTest(
     expectTrue(water > 150 && water < 800, `${water} pixels of water`)
     expectTrue(wrong === 0, `${wrong} pixels on the wrong side of the shore`)
 
-    // Seen from low down it is sky, not bed: brighter, and blue.
+    // Seen from low down it is sky, not bed: brighter, and blue. The sun is behind, where no wave mirrors it.
+    const up = ellipsoid.surfaceNormal(camera.position)
+    const behind = new Vector3().setFromMatrixColumn(
+      ellipsoid.localYUpFrame(camera.position, new Matrix4()),
+      2
+    )
+    atmosphere.sunDirection = up.multiplyScalar(Math.SQRT1_2).addScaledVector(behind, Math.SQRT1_2)
     const mean = async (pitch: number): Promise<number[]> => {
       look(LEVEL + 2, pitch)
       const picture = await t.render(renderer, scene, camera, SIZE)
