@@ -6,7 +6,7 @@ export default defineConfig({
   test: {
     environment: 'node',
     include: ['{packages/*,stories,e2e}/{src,test}/**/*.test.ts'],
-    testTimeout: 120_000,
+    testTimeout: 300_000,
     // Two workers: more only compete on the two cores that CI has.
     maxWorkers: 2
   }

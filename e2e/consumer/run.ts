@@ -18,7 +18,7 @@ const root = fileURLToPath(new URL('../..', import.meta.url))
 const template = fileURLToPath(new URL('app', import.meta.url))
 const report = new Report()
 /** Longest that a page may take: at half the speed, beside another step, clouds under React take more than 120 s [s]. */
-const limitSeconds = 400
+const limitSeconds = 600
 
 /** Runs npm, or a command of the app's, and answers with its standard output. */
 function execute(command: string, args: string[], cwd: string): string {

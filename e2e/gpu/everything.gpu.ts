@@ -94,7 +94,7 @@ gpuTest(
     checkTextures(t, shaders)
     world.dispose()
   },
-  { timeoutSeconds: 600 }
+  { timeoutSeconds: 900 }
 )
 
 gpuTest(
@@ -147,5 +147,5 @@ gpuTest(
     for (const each of [occluded, pipeline, scenePass]) each.dispose()
     world.dispose()
   },
-  { timeoutSeconds: 600 }
+  { backends: ['webgpu'], timeoutSeconds: 900 }
 )

@@ -13,6 +13,8 @@ import type { Report } from '../harness/report'
 const viewport = { width: 720, height: 300 }
 const STORY = 'valley-all-day--day'
 const START_SECONDS = 120
+/** Longest that Storybook's controls may take while the valley is drawn in software, in the same thread [s]. */
+const SLOW_SECONDS = 240
 /** Length of a day: a frame in software, of which a tenth of a second counts, is as long as five minutes of it [s]. */
 const DAY_SECONDS = 30
 
@@ -60,6 +62,7 @@ const look = (story: Frame): Promise<Shown> =>
 /** The story at an address, once it runs. */
 async function open(browser: Browser, url: string, report: Report): Promise<[Page, Frame]> {
   const page = await browser.newPage({ viewport })
+  page.setDefaultTimeout(1000 * SLOW_SECONDS)
   page.on('pageerror', error => {
     // Storybook's own page complains of slow machines.
     const isStorybook = error.stack?.includes('/sb-manager/') === true
@@ -68,9 +71,7 @@ async function open(browser: Browser, url: string, report: Report): Promise<[Pag
   await page.goto(url)
   const element = await page.waitForSelector('#storybook-preview-iframe')
   const story = (await element.contentFrame())!
-  await story.waitForFunction(() => document.body.dataset.ready === 'true', null, {
-    timeout: 180_000
-  })
+  await story.waitForFunction(() => document.body.dataset.ready === 'true')
   return [page, story]
 }
 
@@ -99,7 +100,7 @@ async function testQuality(page: Page, story: Frame, report: Report, wanted: Sho
       return isFirst === true && ground.children.length === 25
     })
   await page.selectOption('#control-quality', 'medium')
-  const end = performance.now() + 60_000
+  const end = performance.now() + 1000 * SLOW_SECONDS
   while (!(await runs()) && performance.now() < end) {
     await new Promise(resolve => setTimeout(resolve, 200))
   }
@@ -154,7 +155,7 @@ const hourIn = (page: Page): number => {
 
 /** Hour in the address once it is later than one; fails with the last one. */
 async function addressAfter(page: Page, hour: number): Promise<number> {
-  const end = performance.now() + 120_000
+  const end = performance.now() + 1000 * SLOW_SECONDS
   while (!(hourIn(page) > hour)) {
     if (performance.now() > end) throw new Error(`the address stays at ${hourIn(page)} h`)
     await page.waitForTimeout(200)
@@ -164,7 +165,7 @@ async function addressAfter(page: Page, hour: number): Promise<number> {
 
 /** Waits until the address has some arguments of the story, once and before its view; fails with the last one. */
 async function addressWith(page: Page, args: string): Promise<string> {
-  const end = performance.now() + 60_000
+  const end = performance.now() + 1000 * SLOW_SECONDS
   const isThere = (): boolean => {
     const { searchParams, hash } = new URL(page.url())
     const [kept, ...others] = searchParams.getAll('args')

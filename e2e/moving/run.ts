@@ -12,9 +12,9 @@ import { startStorybook, testLink } from './link'
 const viewport = { width: 160, height: 90 }
 /** Room for the buttons beside the fingers. */
 const touchViewport = { width: 240, height: 220 }
-const limitSeconds = 300
+const limitSeconds = 600
 /** Storybook's pages are compiled as they are asked for, and the valley is drawn in software. */
-const linkLimitSeconds = 500
+const linkLimitSeconds = 1200
 const stories = fileURLToPath(new URL('../../stories/src/plain.stories.ts', import.meta.url))
 
 const report = new Report()
@@ -26,7 +26,7 @@ async function until(
   page: Page,
   isRight: (view: ExplorerState) => boolean
 ): Promise<ExplorerState> {
-  const end = performance.now() + 30_000
+  const end = performance.now() + 60_000
   for (;;) {
     const view = await look(page)
     if (isRight(view)) return view
@@ -47,7 +47,7 @@ async function atRest(page: Page): Promise<ExplorerState> {
 
 /** Waits until the address has another view than before. */
 async function addressAfter(page: Page, before: string): Promise<string> {
-  await page.waitForFunction(url => location.href !== url, before, { timeout: 30_000 })
+  await page.waitForFunction(url => location.href !== url, before, { timeout: 60_000 })
   // What moved has come to rest, and the address with it.
   await page.waitForTimeout(1200)
   return page.url()
@@ -189,7 +189,7 @@ async function touch(page: Page): Promise<void> {
 async function helpAgain(page: Page): Promise<void> {
   const button = page.locator('.welkin-help')
   const says = async (text: string): Promise<void> =>
-    button.filter({ hasText: text }).waitFor({ timeout: 20_000 })
+    button.filter({ hasText: text }).waitFor({ timeout: 60_000 })
   await says('?')
   report.pass('the line is hidden after a while')
   await page.keyboard.press('h')

@@ -21,7 +21,7 @@ import { wrongIn } from './subjects'
 
 const viewport = { width: 320, height: 180 }
 /** Longest that a picture may take: some 20 s alone, and several times that beside others on a busy machine. */
-const limitSeconds = 360
+const limitSeconds = 600
 const largestBaseline = 100_000
 /** Pictures that take the longest, which come first. */
 const longest = [

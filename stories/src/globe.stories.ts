@@ -86,7 +86,10 @@ export const WholeGlobe: Story = {
 }
 
 /** Eye height, between ridges of real heights. */
-export const Valley: Story = { args: { place: 'valley', hour: 13.5 }, tags: ['screenshot'] }
+export const Valley: Story = {
+  args: { place: 'valley', hour: 13.5 },
+  tags: ['screenshot', 'webgpu-only']
+}
 
 /** Early morning along the Jacksboro fault. */
 export const Ridges: Story = { args: { place: 'ridges', hour: 12 } }

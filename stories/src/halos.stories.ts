@@ -58,13 +58,13 @@ type Story = StoryObj<HalosArgs>
 export const Halo: Story = {
   name: 'Halo and sun dogs',
   args: { exposure: -1.5 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** The sun behind an aeroplane: coloured rings on a thin deck below, about the point where its shadow falls. */
 export const Glory: Story = {
   name: 'Glory from an aeroplane',
-  tags: ['screenshot'],
+  tags: ['screenshot', 'webgpu-only'],
   args: { view: 'glory', sun: VIEWS.glory.sun, dropletRadius: 8, exposure: -1 }
 }
 

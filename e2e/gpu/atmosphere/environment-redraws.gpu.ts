@@ -90,7 +90,7 @@ gpuTest(
     expectTrue(freed >= 3, `dispose freed ${freed} textures`)
     atmosphere.dispose()
   },
-  { ...once, timeoutSeconds: 240 }
+  once
 )
 
 gpuTest(
@@ -110,7 +110,7 @@ gpuTest(
     environment.dispose()
     atmosphere.dispose()
   },
-  { ...once, timeoutSeconds: 120 }
+  once
 )
 
 gpuTest(
@@ -149,7 +149,7 @@ gpuTest(
     environment.dispose()
     atmosphere.dispose()
   },
-  { ...once, timeoutSeconds: 120 }
+  once
 )
 
 gpuTest(
@@ -184,7 +184,7 @@ gpuTest(
     environment.dispose()
     atmosphere.dispose()
   },
-  { ...once, timeoutSeconds: 180 }
+  once
 )
 
 gpuTest(
@@ -234,5 +234,5 @@ gpuTest(
     expected.dispose()
     cube.dispose()
   },
-  { bakes: ['webgpu'], timeoutSeconds: 240 }
+  { bakes: ['webgpu'] }
 )

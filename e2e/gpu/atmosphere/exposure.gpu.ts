@@ -354,15 +354,13 @@ async function judge(t: GpuContext, all: readonly Judged[]): Promise<void> {
   stage.dispose()
 }
 
-gpuTest(
-  'days, faced suns, snow and orbit: at most 3 % clipped, mean 0.2 to 0.5',
-  async t => judge(t, judged(days, [0.2, 0.5])),
-  { timeoutSeconds: 300 }
+gpuTest('days, faced suns, snow and orbit: at most 3 % clipped, mean 0.2 to 0.5', async t =>
+  judge(t, judged(days, [0.2, 0.5]))
 )
 
 gpuTest(
   'nights with and without a moon stay dark, not black, and with darkNights off they are shown as days: at most 3 % clipped',
   async t => judge(t, [...judged(nights, [0.02, 0.2]), ...judged(nights, [0.2, 0.5], false)]),
   // What meters is what the test before runs on both.
-  { backends: ['webgpu'], timeoutSeconds: 300 }
+  { backends: ['webgpu'] }
 )

@@ -237,7 +237,7 @@ gpuTest(
     const most = tables[0].reduce((a, b) => Math.max(a, b))
     expectTrue(most > 0, 'the tables are empty')
   },
-  { bakes: true }
+  { backends: ['webgpu'], bakes: true }
 )
 
 gpuTest(
@@ -297,7 +297,7 @@ gpuTest(
     t.note(before)
   },
   // three counts them itself, on both backends alike.
-  { backends: ['webgpu'], bakes: true, timeoutSeconds: 400 }
+  { backends: ['webgpu'], bakes: true }
 )
 
 gpuTest('draws every pixel ratio alike', async t => {

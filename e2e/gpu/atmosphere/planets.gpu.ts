@@ -116,59 +116,64 @@ function stripes(width: number): DataTexture {
   return map
 }
 
-gpuTest('puts the ground where float64 does, from 2 m to 20,000 km', async t => {
-  const size = [64, 36]
-  const renderer = await t.createRenderer({ width: size[0], height: size[1] })
-  const { a, b } = Ellipsoid.WGS84
-  const parameters = airlessParameters({ radius: a })
-  const atmosphere = new Atmosphere({ parameters, ellipsoid: new Ellipsoid(a, a, b) })
-  const columns = 3600
-  const map = stripes(columns)
-  atmosphere.add(planetGround({ surface: map, roughness: 0 }))
-  const scene = new Scene()
-  const camera = new PerspectiveCamera(40, size[0] / size[1], 1, 1e8)
-  for (const height of [2, 100, 1e4, 4e5, 2e7]) {
-    // An edge between two texels runs straight ahead.
-    atmosphere.place({ longitude: 50, latitude: 40 }).setSunAngles(50, 120)
-    camera.position.y = height
-    camera.rotation.x = height < 1e6 ? -0.4 : -Math.PI / 2
-    camera.updateMatrixWorld()
-    const picture = await drawForward(renderer, scene, camera, atmosphere)
-    const origin = camera.position.clone().applyMatrix4(atmosphere.worldToECEF)
-    let worst = 0
-    let seen = 0
-    for (let y = 0; y < size[1]; y++) {
-      for (let x = 0; x < size[0]; x++) {
-        const ray = pixelDirection(camera, x, y, size).transformDirection(atmosphere.worldToECEF)
-        const distance = atmosphere.ellipsoid.intersectRayDistance(origin, ray)
-        if (distance === null) continue
-        seen++
-        const hit = origin.clone().addScaledVector(ray, distance)
-        const longitude = Math.atan2(hit.y, hit.x)
-        const column = (longitude / (2 * Math.PI) + 0.5) * columns
-        const cosLight = atmosphere.ellipsoid
-          .surfaceNormal(hit)
-          .dot(atmosphere.sunDirection.transformDirection(atmosphere.worldToECEF))
-        if (cosLight < 0.05) continue
-        const isLight = Math.floor(column) % 2 === 1
-        const value = luminance(picture.at(x, y)) / cosLight
-        const white =
-          luminance(new LightQuery('test', atmosphere, camera.position).linearSRGB([1, 1, 1, 1])) /
-          Math.PI
-        const looksLight = value > 0.5 * white * atmosphere.luminanceScale
-        if (looksLight === isLight) continue
-        // How far from the edge between two texels, on the ground.
-        const off = Math.abs(column - Math.round(column)) / columns
-        worst = Math.max(worst, off * 2 * Math.PI * Math.hypot(hit.x, hit.y))
+gpuTest(
+  'puts the ground where float64 does, from 2 m to 20,000 km',
+  async t => {
+    const size = [64, 36]
+    const renderer = await t.createRenderer({ width: size[0], height: size[1] })
+    const { a, b } = Ellipsoid.WGS84
+    const parameters = airlessParameters({ radius: a })
+    const atmosphere = new Atmosphere({ parameters, ellipsoid: new Ellipsoid(a, a, b) })
+    const columns = 3600
+    const map = stripes(columns)
+    atmosphere.add(planetGround({ surface: map, roughness: 0 }))
+    const scene = new Scene()
+    const camera = new PerspectiveCamera(40, size[0] / size[1], 1, 1e8)
+    for (const height of [2, 100, 1e4, 4e5, 2e7]) {
+      // An edge between two texels runs straight ahead.
+      atmosphere.place({ longitude: 50, latitude: 40 }).setSunAngles(50, 120)
+      camera.position.y = height
+      camera.rotation.x = height < 1e6 ? -0.4 : -Math.PI / 2
+      camera.updateMatrixWorld()
+      const picture = await drawForward(renderer, scene, camera, atmosphere)
+      const origin = camera.position.clone().applyMatrix4(atmosphere.worldToECEF)
+      let worst = 0
+      let seen = 0
+      for (let y = 0; y < size[1]; y++) {
+        for (let x = 0; x < size[0]; x++) {
+          const ray = pixelDirection(camera, x, y, size).transformDirection(atmosphere.worldToECEF)
+          const distance = atmosphere.ellipsoid.intersectRayDistance(origin, ray)
+          if (distance === null) continue
+          seen++
+          const hit = origin.clone().addScaledVector(ray, distance)
+          const longitude = Math.atan2(hit.y, hit.x)
+          const column = (longitude / (2 * Math.PI) + 0.5) * columns
+          const cosLight = atmosphere.ellipsoid
+            .surfaceNormal(hit)
+            .dot(atmosphere.sunDirection.transformDirection(atmosphere.worldToECEF))
+          if (cosLight < 0.05) continue
+          const isLight = Math.floor(column) % 2 === 1
+          const value = luminance(picture.at(x, y)) / cosLight
+          const white =
+            luminance(
+              new LightQuery('test', atmosphere, camera.position).linearSRGB([1, 1, 1, 1])
+            ) / Math.PI
+          const looksLight = value > 0.5 * white * atmosphere.luminanceScale
+          if (looksLight === isLight) continue
+          // How far from the edge between two texels, on the ground.
+          const off = Math.abs(column - Math.round(column)) / columns
+          worst = Math.max(worst, off * 2 * Math.PI * Math.hypot(hit.x, hit.y))
+        }
       }
+      t.note(`${height} m: ${worst.toFixed(2)} m`)
+      expectTrue(seen > 300, `${height} m: only ${seen} pixels see the ground`)
+      expectTrue(worst < 3 + 1e-6 * height, `${height} m: the ground is ${worst} m off`)
     }
-    t.note(`${height} m: ${worst.toFixed(2)} m`)
-    expectTrue(seen > 300, `${height} m: only ${seen} pixels see the ground`)
-    expectTrue(worst < 3 + 1e-6 * height, `${height} m: the ground is ${worst} m off`)
-  }
-  atmosphere.dispose()
-  map.dispose()
-})
+    atmosphere.dispose()
+    map.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest('draws even ground as the model does', async t => {
   const renderer = await t.createRenderer({ width: 48, height: 27 })
@@ -237,7 +242,8 @@ gpuTest(
     for (const node of [scene.backgroundNode, scene.fogNode]) node.dispose()
     atmosphere.dispose()
     map.dispose()
-  }
+  },
+  { backends: ['webgpu'] }
 )
 
 gpuTest('feeds the mean albedo of its ground to the air', async t => {
@@ -285,47 +291,51 @@ gpuTest('shows a body without air: black sky, sun, sunlit ground', async t => {
   atmosphere.dispose()
 })
 
-gpuTest('keeps two atmospheres in one scene apart', async t => {
-  const size = { width: 48, height: 27 }
-  const renderer = await t.createRenderer(size)
-  const earth = new Atmosphere().setSunAngles(30, 40)
-  const mars = new Atmosphere({
-    parameters: marsParameters(),
-    ellipsoid: new Ellipsoid(3_396_190, 3_376_200)
-  })
-  // A red planet 20,000 km overhead.
-  mars.worldToECEF.makeTranslation(0, -2e7, 1e7)
-  mars.sunDirection = earth.sunDirection
-  const camera = new PerspectiveCamera(70, 48 / 27, 1, 1e8)
-  camera.position.y = 100
-  camera.rotation.x = 0.9
-  camera.updateMatrixWorld()
-  const draw = (background: Node) => {
-    const scene = new Scene()
-    scene.backgroundNode = background
-    return drawForward(renderer, scene, camera, earth)
-  }
-  const alone = [await draw(skyBackground(earth)), await draw(skyBackground(mars))]
-  const [near, far] = [skyBackground(earth), skyBackground(mars)] as unknown as Node<'vec4'>[]
-  const both = await draw(vec4(near.rgb.add(far.rgb), 1))
-  const sum = alone[0].data.map((value, i) => (i % 4 < 3 ? value + alone[1].data[i] : 1))
-  expectClose(both.data, sum, { relative: 1e-3, absolute: 1e-5 }, 'sum')
-  const again = await draw(skyBackground(earth))
-  expectTrue(relativeDifferences(alone[0], again).at(-1)! < 1e-4, 'the first sky has changed')
-  const most = Math.max(...alone[1].data.filter((_, i) => i % 4 === 0))
-  expectTrue(most > 0.05, `the red planet is not to be seen: ${most}`)
+gpuTest(
+  'keeps two atmospheres in one scene apart',
+  async t => {
+    const size = { width: 48, height: 27 }
+    const renderer = await t.createRenderer(size)
+    const earth = new Atmosphere().setSunAngles(30, 40)
+    const mars = new Atmosphere({
+      parameters: marsParameters(),
+      ellipsoid: new Ellipsoid(3_396_190, 3_376_200)
+    })
+    // A red planet 20,000 km overhead.
+    mars.worldToECEF.makeTranslation(0, -2e7, 1e7)
+    mars.sunDirection = earth.sunDirection
+    const camera = new PerspectiveCamera(70, 48 / 27, 1, 1e8)
+    camera.position.y = 100
+    camera.rotation.x = 0.9
+    camera.updateMatrixWorld()
+    const draw = (background: Node) => {
+      const scene = new Scene()
+      scene.backgroundNode = background
+      return drawForward(renderer, scene, camera, earth)
+    }
+    const alone = [await draw(skyBackground(earth)), await draw(skyBackground(mars))]
+    const [near, far] = [skyBackground(earth), skyBackground(mars)] as unknown as Node<'vec4'>[]
+    const both = await draw(vec4(near.rgb.add(far.rgb), 1))
+    const sum = alone[0].data.map((value, i) => (i % 4 < 3 ? value + alone[1].data[i] : 1))
+    expectClose(both.data, sum, { relative: 1e-3, absolute: 1e-5 }, 'sum')
+    const again = await draw(skyBackground(earth))
+    expectTrue(relativeDifferences(alone[0], again).at(-1)! < 1e-4, 'the first sky has changed')
+    const most = Math.max(...alone[1].data.filter((_, i) => i % 4 === 0))
+    expectTrue(most > 0.05, `the red planet is not to be seen: ${most}`)
 
-  // One after the other in a scene, sky and haze.
-  const wall = new Mesh(new PlaneGeometry(6e5, 6e5), new MeshLambertMaterial({ color: 0 }))
-  wall.position.set(-3e5, 0, -4e5)
-  const scene = new Scene().add(wall)
-  await drawForward(renderer, scene, camera, earth)
-  const second = await drawForward(renderer, scene, camera, mars)
-  const afresh = await drawForward(renderer, new Scene().add(wall), camera, mars)
-  expectTrue(relativeDifferences(second, afresh).at(-1)! < 1e-4, 'the first sky or haze stays')
-  earth.dispose()
-  mars.dispose()
-})
+    // One after the other in a scene, sky and haze.
+    const wall = new Mesh(new PlaneGeometry(6e5, 6e5), new MeshLambertMaterial({ color: 0 }))
+    wall.position.set(-3e5, 0, -4e5)
+    const scene = new Scene().add(wall)
+    await drawForward(renderer, scene, camera, earth)
+    const second = await drawForward(renderer, scene, camera, mars)
+    const afresh = await drawForward(renderer, new Scene().add(wall), camera, mars)
+    expectTrue(relativeDifferences(second, afresh).at(-1)! < 1e-4, 'the first sky or haze stays')
+    earth.dispose()
+    mars.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest('keeps up and the sky of a flat world wherever the camera goes', async t => {
   const renderer = await t.createRenderer({ width: 32, height: 18 })

@@ -115,39 +115,43 @@ function everything(atmosphere: Atmosphere): Scene {
 
 const refusal = /Atmosphere: renderer must be the first, until/
 
-gpuTest('refuses a second renderer until the first is disposed of', async t => {
-  const camera = makeCamera()
-  const atmosphere = new Atmosphere().setSunAngles(40, 60)
-  const scene = everything(atmosphere)
-  const [first, second, third] = [
-    await t.createRenderer(size),
-    await t.createRenderer(size),
-    await t.createRenderer(size)
-  ]
-  const draw = async (renderer: WebGPURenderer, what = scene): Promise<Picture> => {
-    let picture = new Picture(0, 0, new Float32Array())
-    // The environment is complete after some frames.
-    for (let i = 0; i < 3; i++)
-      picture = await drawToFloat(renderer, () => renderer.render(what, camera))
-    expectLight(picture, 'a picture')
-    return picture
-  }
-  const expected = await draw(first)
-  const most = (picture: Picture): number => relativeDifferences(expected, picture).at(-1)!
-  for (let i = 0; i < 2; i++) expectError(() => second.render(scene, camera), refusal)
-  expectTrue(most(await draw(first)) === 0, 'the first draws something else after that')
-  expectError(() => atmosphere.update(second, camera), refusal)
+gpuTest(
+  'refuses a second renderer until the first is disposed of',
+  async t => {
+    const camera = makeCamera()
+    const atmosphere = new Atmosphere().setSunAngles(40, 60)
+    const scene = everything(atmosphere)
+    const [first, second, third] = [
+      await t.createRenderer(size),
+      await t.createRenderer(size),
+      await t.createRenderer(size)
+    ]
+    const draw = async (renderer: WebGPURenderer, what = scene): Promise<Picture> => {
+      let picture = new Picture(0, 0, new Float32Array())
+      // The environment is complete after some frames.
+      for (let i = 0; i < 3; i++)
+        picture = await drawToFloat(renderer, () => renderer.render(what, camera))
+      expectLight(picture, 'a picture')
+      return picture
+    }
+    const expected = await draw(first)
+    const most = (picture: Picture): number => relativeDifferences(expected, picture).at(-1)!
+    for (let i = 0; i < 2; i++) expectError(() => second.render(scene, camera), refusal)
+    expectTrue(most(await draw(first)) === 0, 'the first draws something else after that')
+    expectError(() => atmosphere.update(second, camera), refusal)
 
-  await first.dispose()
-  const bySecond = most(await draw(second))
-  expectTrue(bySecond < 1e-3, `a renderer in the first's place draws something else: ${bySecond}`)
+    await first.dispose()
+    const bySecond = most(await draw(second))
+    expectTrue(bySecond < 1e-3, `a renderer in the first's place draws something else: ${bySecond}`)
 
-  expectError(() => third.render(scene, camera), refusal)
-  atmosphere.dispose()
-  const byThird = most(await draw(third, everything(atmosphere)))
-  expectTrue(byThird < 1e-3, `after the atmosphere's dispose it draws something else: ${byThird}`)
-  atmosphere.dispose()
-})
+    expectError(() => third.render(scene, camera), refusal)
+    atmosphere.dispose()
+    const byThird = most(await draw(third, everything(atmosphere)))
+    expectTrue(byThird < 1e-3, `after the atmosphere's dispose it draws something else: ${byThird}`)
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest('refuses a layer that another renderer draws', async t => {
   const camera = makeCamera()

@@ -44,7 +44,8 @@ gpuTest(
       expectClose(losses[0], losses[1], { relative: 0.01, absolute: 1e-4 }, label)
     }
     set.dispose()
-  }
+  },
+  { backends: ['webgpu'] }
 )
 
 gpuTest(

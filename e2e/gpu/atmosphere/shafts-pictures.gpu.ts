@@ -191,7 +191,7 @@ gpuTest(
     }
     set.dispose()
   },
-  { backends: ['webgpu'], timeoutSeconds: 240 }
+  { backends: ['webgpu'] }
 )
 
 gpuTest(

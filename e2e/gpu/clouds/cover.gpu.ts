@@ -243,5 +243,5 @@ gpuTest(
     }
     atmosphere.dispose()
   },
-  { backends: ['webgpu'], timeoutSeconds: 120 }
+  { backends: ['webgpu'] }
 )

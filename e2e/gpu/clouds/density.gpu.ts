@@ -278,70 +278,74 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
-gpuTest('gives numbers for any parameters, of clouds and of what falls from them', async t => {
-  const draw = random(11)
-  const pick = (...values: number[]): number => values[Math.floor(draw() * values.length)]
-  const layers = new CloudLayers([{}, {}, {}, {}])
-  const scene = await cloudScene(t, layers, { longitude: -75, latitude: -60, height: 3000 })
-  const medium = precipitationShafts()
-  const inputs = [
-    ...offsets(scene.viewpoint, 400, 50_000, 5),
-    ...offsets(scene.viewpoint, 100, 3_000_000, 6),
-    [0, 0, 0, 0],
-    [0, 0, 0, 1e9],
-    [scene.viewpoint.x, scene.viewpoint.y, scene.viewpoint.z, 1e7],
-    [-scene.viewpoint.x, -scene.viewpoint.y, -scene.viewpoint.z, 1e7]
-  ]
-  for (let round = 0; round < 12; round++) {
-    for (const layer of layers) {
-      const baseAltitude = pick(0, 500, 29_999)
-      layer.set({
-        baseAltitude,
-        topAltitude: pick(baseAltitude + 1e-3, baseAltitude + 1, 30_000),
-        coverage: pick(0, 1e-6, 0.5, 1),
-        density: pick(0, 1e-9, 0.05, 1),
-        profileExponent: pick(1e-9, 0.01, 1, 8),
-        baseRelief: pick(0, 1e-9, 0.5, 1),
-        shapeAmount: pick(0, 0.5, 1),
-        detailAmount: pick(0, 1),
-        weatherScale: pick(0.1, 1, 10),
-        shapeScale: pick(0.1, 1, 10),
-        detailScale: pick(0.1, 1, 10),
-        edgeSoftness: pick(0, 0.5, 1),
-        turbulence: pick(0, 1, 2),
-        shear: pick(-5, 0, 5),
-        anvil: pick(0, 0.5, 1),
-        openCells: pick(0, 0.5, 1),
-        densityGrowth: pick(0, 1, 4),
-        weatherWeights: [pick(0, 1), pick(0, 1e-9), pick(0, 1), pick(0, 1)],
-        wind: { east: pick(0, 1e6), north: pick(0, -1e9) },
-        precipitation: {
-          rate: pick(0, 1e-3, 300),
-          share: pick(1e-9, 0.5, 1),
-          virgaDepth: pick(0, 1e-3, 20_000),
-          freezingLevel: pick(-1000, 600, 30_000),
-          hail: pick(0, 1),
-          streaks: pick(0, 1, 3)
-        }
+gpuTest(
+  'gives numbers for any parameters, of clouds and of what falls from them',
+  async t => {
+    const draw = random(11)
+    const pick = (...values: number[]): number => values[Math.floor(draw() * values.length)]
+    const layers = new CloudLayers([{}, {}, {}, {}])
+    const scene = await cloudScene(t, layers, { longitude: -75, latitude: -60, height: 3000 })
+    const medium = precipitationShafts()
+    const inputs = [
+      ...offsets(scene.viewpoint, 400, 50_000, 5),
+      ...offsets(scene.viewpoint, 100, 3_000_000, 6),
+      [0, 0, 0, 0],
+      [0, 0, 0, 1e9],
+      [scene.viewpoint.x, scene.viewpoint.y, scene.viewpoint.z, 1e7],
+      [-scene.viewpoint.x, -scene.viewpoint.y, -scene.viewpoint.z, 1e7]
+    ]
+    for (let round = 0; round < 12; round++) {
+      for (const layer of layers) {
+        const baseAltitude = pick(0, 500, 29_999)
+        layer.set({
+          baseAltitude,
+          topAltitude: pick(baseAltitude + 1e-3, baseAltitude + 1, 30_000),
+          coverage: pick(0, 1e-6, 0.5, 1),
+          density: pick(0, 1e-9, 0.05, 1),
+          profileExponent: pick(1e-9, 0.01, 1, 8),
+          baseRelief: pick(0, 1e-9, 0.5, 1),
+          shapeAmount: pick(0, 0.5, 1),
+          detailAmount: pick(0, 1),
+          weatherScale: pick(0.1, 1, 10),
+          shapeScale: pick(0.1, 1, 10),
+          detailScale: pick(0.1, 1, 10),
+          edgeSoftness: pick(0, 0.5, 1),
+          turbulence: pick(0, 1, 2),
+          shear: pick(-5, 0, 5),
+          anvil: pick(0, 0.5, 1),
+          openCells: pick(0, 0.5, 1),
+          densityGrowth: pick(0, 1, 4),
+          weatherWeights: [pick(0, 1), pick(0, 1e-9), pick(0, 1), pick(0, 1)],
+          wind: { east: pick(0, 1e6), north: pick(0, -1e9) },
+          precipitation: {
+            rate: pick(0, 1e-3, 300),
+            share: pick(1e-9, 0.5, 1),
+            virgaDepth: pick(0, 1e-3, 20_000),
+            freezingLevel: pick(-1000, 600, 30_000),
+            hail: pick(0, 1),
+            streaks: pick(0, 1, 3)
+          }
+        })
+      }
+      medium.update(scene.field, scene.update(pick(0, 1, 1e12)))
+      const results = await evaluateOnGpu(scene.renderer, inputs, input => {
+        const offset = input.xyz.toConst() as unknown as Node<'vec3'>
+        const { altitude, up } = scene.field.view.localCoordinates(offset)
+        const sample = { offset, altitude, up, distance: input.w }
+        return vec4(
+          cloudExtinction(scene.field, sample, true),
+          cloudExtinction(scene.field, sample, false),
+          verticalOpticalDepth(scene.field, sample),
+          medium.extinctionAt(scene.field, layerAt(scene.field, int(0)), sample)
+        )
       })
-    }
-    medium.update(scene.field, scene.update(pick(0, 1, 1e12)))
-    const results = await evaluateOnGpu(scene.renderer, inputs, input => {
-      const offset = input.xyz.toConst() as unknown as Node<'vec3'>
-      const { altitude, up } = scene.field.view.localCoordinates(offset)
-      const sample = { offset, altitude, up, distance: input.w }
-      return vec4(
-        cloudExtinction(scene.field, sample, true),
-        cloudExtinction(scene.field, sample, false),
-        verticalOpticalDepth(scene.field, sample),
-        medium.extinctionAt(scene.field, layerAt(scene.field, int(0)), sample)
+      expectFinite(results, `round ${round}`)
+      expectTrue(
+        results.every(x => x >= 0),
+        `round ${round}: a negative extinction`
       )
-    })
-    expectFinite(results, `round ${round}`)
-    expectTrue(
-      results.every(x => x >= 0),
-      `round ${round}: a negative extinction`
-    )
-  }
-  scene.dispose()
-})
+    }
+    scene.dispose()
+  },
+  { backends: ['webgpu'] }
+)

@@ -114,8 +114,6 @@ gpuTest(
       layers.at(0).set({ ...cloudPreset(name).at(0).parameters, coverage })
       for (const [elevation, tiltDegrees] of [
         [60, 0],
-        [60, 50],
-        [10, 0],
         [10, 50]
       ]) {
         atmosphere.setSunAngles(elevation, SUN_AZIMUTH)

@@ -140,5 +140,5 @@ gpuTest(
     atmosphere.dispose()
   },
   // How the clouds look is the same where their density is: see `clouds/density`.
-  { backends: ['webgpu'], timeoutSeconds: 240 }
+  { backends: ['webgpu'] }
 )

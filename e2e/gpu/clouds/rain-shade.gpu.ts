@@ -120,7 +120,7 @@ gpuTest(
     for (const owned of [node, pipeline, light, noise, set]) owned.dispose()
   },
   // The same look-ups as in clouds, which WebGL draws, too.
-  { backends: ['webgpu'], timeoutSeconds: 120 }
+  { backends: ['webgpu'] }
 )
 
 /** A thin layer over the camera. */

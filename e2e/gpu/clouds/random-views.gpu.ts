@@ -22,9 +22,9 @@ import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 
 /** Random scenes by backend, of which each draws shadow maps anew: on WebGL each size and debug view once. */
-const ROUNDS = { webgpu: 10, webgl: 5 }
+const ROUNDS = { webgpu: 7, webgl: 4 }
 /** Least of them in which clouds are in view. */
-const CLOUDY = { webgpu: 3, webgl: 1 }
+const CLOUDY = { webgpu: 2, webgl: 1 }
 
 const sizes = [
   [24, 14, 1],
@@ -130,8 +130,7 @@ gpuTest(
     t.note(`clouds in ${cloudy} of ${rounds} pictures`)
     expectTrue(cloudy >= CLOUDY[t.backend], `clouds in only ${cloudy} of ${rounds} pictures`)
     dispose()
-  },
-  { timeoutSeconds: 240 }
+  }
 )
 
 /** Rain, snow and hail under towers, a deck and storms; and clouds of three kinds. */
@@ -150,11 +149,11 @@ gpuTest(
     await node.bake(renderer)
     const next = random(11)
     let changed = 0
-    for (const preset of presets) {
+    for (const [i, preset] of presets.entries()) {
       const own = cloudPreset(preset)
-      for (let round = 0; round < 4; round++) {
-        // Below, among and above the clouds, and from space.
-        const altitude = [2, 1500, 12_000, 4e5 + 3e7 * next()][round]
+      for (let round = 0; round < 2; round++) {
+        // Below, among and above the clouds, and from space: of each preset two, since each draws the shadow maps anew, twice.
+        const altitude = [2, 1500, 12_000, 4e5 + 3e7 * next()][(2 * i + round) % 4]
         const direction = new Vector3(next() - 0.5, next() - 0.5, next() - 0.5).normalize()
         camera.position.copy(direction).multiplyScalar(Ellipsoid.WGS84.a + altitude)
         camera.up.set(next() - 0.5, next() - 0.5, next() - 0.5)
@@ -163,9 +162,9 @@ gpuTest(
         node.time = 1e5 * next()
         const pictures = []
         for (const coverage of [0, next()]) {
-          for (let i = 0; i < layers.length; i++) {
-            const { parameters } = own.at(Math.min(i, own.length - 1))
-            layers.at(i).set({ ...parameters, coverage: i < own.length ? coverage : 0 })
+          for (let k = 0; k < layers.length; k++) {
+            const { parameters } = own.at(Math.min(k, own.length - 1))
+            layers.at(k).set({ ...parameters, coverage: k < own.length ? coverage : 0 })
           }
           const picture = await view.draw()
           expectLight(picture, `${preset}, ${altitude} m`)
@@ -175,9 +174,10 @@ gpuTest(
         if (cloudy.some((value, i) => Math.abs(value - clear[i]) > 1e-3)) changed++
       }
     }
-    expectTrue(changed >= 6, `clouds change only ${changed} of 16 pictures`)
+    t.note(`clouds change ${changed} of 8 pictures`)
+    expectTrue(changed >= 3, `clouds change only ${changed} of 8 pictures`)
     dispose()
   },
   // The shaders that the test before has drawn with on both.
-  { backends: ['webgpu'], timeoutSeconds: 300 }
+  { backends: ['webgpu'] }
 )

@@ -53,7 +53,7 @@ for (const depth of ['standard', 'reversed', 'logarithmic'] as const) {
         }
       ),
     // Logarithmic depth is written and read by the same functions on both.
-    { timeoutSeconds: 120, backends: depth === 'logarithmic' ? ['webgpu'] : ['webgpu', 'webgl'] }
+    { backends: depth === 'logarithmic' ? ['webgpu'] : ['webgpu', 'webgl'] }
   )
 }
 

@@ -159,7 +159,7 @@ gpuTest(
     dispose()
   },
   // The same look-ups as in the air, which WebGL draws, too.
-  { backends: ['webgpu'], timeoutSeconds: 180 }
+  { backends: ['webgpu'] }
 )
 
 gpuTest(
@@ -176,7 +176,7 @@ gpuTest(
     checkShadow(t, set, lit, dark, { 'shadow map': byMap })
     dispose()
   },
-  { backends: ['webgpu'], timeoutSeconds: 180 }
+  { backends: ['webgpu'] }
 )
 
 gpuTest(
@@ -249,7 +249,7 @@ gpuTest(
     }
     for (const owned of [node, pipeline, scenePass, shafts, table, noise, first]) owned.dispose()
   },
-  { timeoutSeconds: 180 }
+  { backends: ['webgpu'] }
 )
 
 gpuTest(

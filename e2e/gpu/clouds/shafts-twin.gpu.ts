@@ -80,7 +80,8 @@ gpuTest(
     }
     dispose()
     set.dispose()
-  }
+  },
+  { backends: ['webgpu'] }
 )
 
 /** Steps of the march through rain, places on a view ray and how far it goes [m]. */

@@ -101,7 +101,7 @@ for (const [name, extinction, isClear] of decks) {
       set.dispose()
     },
     // The same passes: WebGL reads them as the last one does.
-    { backends: name.startsWith('a slit') ? ['webgpu', 'webgl'] : ['webgpu'], timeoutSeconds: 180 }
+    { backends: name.startsWith('a slit') ? ['webgpu', 'webgl'] : ['webgpu'] }
   )
 }
 
@@ -256,7 +256,7 @@ gpuTest(
     set.dispose()
   },
   // The look-up is that of the decks above, which WebGL runs, too.
-  { backends: ['webgpu'], timeoutSeconds: 240 }
+  { backends: ['webgpu'] }
 )
 
 gpuTest(
@@ -318,7 +318,7 @@ gpuTest(
     for (const owned of [node, pipeline, light, noise, set]) owned.dispose()
   },
   // A slit in a deck is drawn on both backends.
-  { backends: ['webgpu'], timeoutSeconds: 180 }
+  { backends: ['webgpu'] }
 )
 
 gpuTest(
@@ -389,49 +389,52 @@ gpuTest(
     expectTrue(apart(beside, own) < 1e-3 * shadows, "beside the clouds' shadows")
     for (const owned of [plain, set]) owned.dispose()
     dispose()
-  },
-  { timeoutSeconds: 180 }
+  }
 )
 
-gpuTest('dims light scattered more than once as it dims that on surfaces', async t => {
-  const renderer = await t.createRenderer(size)
-  const set = stage(renderer, 40, { quality: 'reference' })
-  const { node, draw, dispose } = await unseenClouds(
-    renderer,
-    set,
-    new CloudLayers([{ ...fog, density: 0.02 }]),
-    new SparseNoise()
-  )
-  await draw()
-  const { field, light } = node
-  const { view } = field
-  const heights = [0, 200, 1000, 1800, 3000, 9000, 20_000]
-  const found = await evaluateOnGpu(
-    renderer,
-    heights.map(height => [height, 0, 0, 0]),
-    ({ x }) => {
-      // The camera is 2 m above the ground.
-      const offset = view.up.mul(x).toConst()
-      const place = { offset, ...view.localCoordinates(offset) }
-      const { altitude, cosLight } = place
-      const { uniforms, diffuse } = view.air
-      const clear = horizontalIrradiance(uniforms, diffuse!, altitude, cosLight)
-      const facing = (plane: Vec4, cosNormal: number): Vec4 => {
-        const lit = { view, ...place, cosNormal: float(cosNormal) }
-        return overcastIrradiance(field, light.nodes, lit, offset, plane)
+gpuTest(
+  'dims light scattered more than once as it dims that on surfaces',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const set = stage(renderer, 40, { quality: 'reference' })
+    const { node, draw, dispose } = await unseenClouds(
+      renderer,
+      set,
+      new CloudLayers([{ ...fog, density: 0.02 }]),
+      new SparseNoise()
+    )
+    await draw()
+    const { field, light } = node
+    const { view } = field
+    const heights = [0, 200, 1000, 1800, 3000, 9000, 20_000]
+    const found = await evaluateOnGpu(
+      renderer,
+      heights.map(height => [height, 0, 0, 0]),
+      ({ x }) => {
+        // The camera is 2 m above the ground.
+        const offset = view.up.mul(x).toConst()
+        const place = { offset, ...view.localCoordinates(offset) }
+        const { altitude, cosLight } = place
+        const { uniforms, diffuse } = view.air
+        const clear = horizontalIrradiance(uniforms, diffuse!, altitude, cosLight)
+        const facing = (plane: Vec4, cosNormal: number): Vec4 => {
+          const lit = { view, ...place, cosNormal: float(cosNormal) }
+          return overcastIrradiance(field, light.nodes, lit, offset, plane)
+        }
+        const [up, down] = [clear.up.toConst() as Vec4, clear.down.toConst() as Vec4]
+        const cloudy = facing(up, 1).add(facing(down, -1))
+        const decks = meanDecks(field, light.nodes, altitude, cosLight)
+        const ratio = diffuseRatio(view, decks, altitude, cosLight)
+        return vec4(ratio.y, cloudy.div(up.add(down)).y, ratio.x, ratio.w)
       }
-      const [up, down] = [clear.up.toConst() as Vec4, clear.down.toConst() as Vec4]
-      const cloudy = facing(up, 1).add(facing(down, -1))
-      const decks = meanDecks(field, light.nodes, altitude, cosLight)
-      const ratio = diffuseRatio(view, decks, altitude, cosLight)
-      return vec4(ratio.y, cloudy.div(up.add(down)).y, ratio.x, ratio.w)
-    }
-  )
-  heights.forEach((height, i) => {
-    const [ratio, expected, red, infrared] = found.subarray(4 * i, 4 * i + 4)
-    t.note(`\n${height} m: ${[red, ratio, infrared].map(value => value.toFixed(3)).join(', ')}`)
-    expectClose(ratio, expected, { relative: 2e-3 }, `${height} m`)
-  })
-  dispose()
-  set.dispose()
-})
+    )
+    heights.forEach((height, i) => {
+      const [ratio, expected, red, infrared] = found.subarray(4 * i, 4 * i + 4)
+      t.note(`\n${height} m: ${[red, ratio, infrared].map(value => value.toFixed(3)).join(', ')}`)
+      expectClose(ratio, expected, { relative: 2e-3 }, `${height} m`)
+    })
+    dispose()
+    set.dispose()
+  },
+  { backends: ['webgpu'] }
+)

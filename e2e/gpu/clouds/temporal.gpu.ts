@@ -185,7 +185,7 @@ gpuTest(
       sky.dispose()
     }),
   // The same passes as in the test with a pole, which both backends run.
-  { backends: ['webgpu'], timeoutSeconds: 300 }
+  { backends: ['webgpu'] }
 )
 
 gpuTest(
@@ -240,7 +240,7 @@ gpuTest(
       },
       narrow.size
     ),
-  { backends: ['webgpu'], timeoutSeconds: 300 }
+  { backends: ['webgpu'] }
 )
 
 /**
@@ -291,7 +291,7 @@ for (const [quality, most] of [
         },
         narrow.size
       ),
-    { backends: ['webgpu'], timeoutSeconds: 300 }
+    { backends: ['webgpu'] }
   )
 }
 
@@ -317,7 +317,7 @@ gpuTest(
       },
       narrow.size
     ),
-  { backends: ['webgpu'], timeoutSeconds: 300 }
+  { backends: ['webgpu'] }
 )
 
 gpuTest(
@@ -359,7 +359,7 @@ gpuTest(
       pole.material.dispose()
       sky.dispose()
     }),
-  { timeoutSeconds: 300 }
+  { backends: ['webgpu'] }
 )
 
 gpuTest(
@@ -396,5 +396,5 @@ gpuTest(
       fresh.dispose()
     }),
   // Matrices are of the CPU.
-  { backends: ['webgpu'], timeoutSeconds: 300 }
+  { backends: ['webgpu'] }
 )

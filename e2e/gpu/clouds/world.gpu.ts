@@ -419,5 +419,5 @@ gpuTest(
     atmosphere.dispose()
   },
   // The test with everything on draws all of these on both backends.
-  { backends: ['webgpu'], timeoutSeconds: 240 }
+  { backends: ['webgpu'] }
 )

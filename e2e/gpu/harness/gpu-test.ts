@@ -4,6 +4,10 @@ import type { GpuContext } from './context'
 export interface GpuTest {
   name: string
   body: (context: GpuContext) => Promise<void> | void
+  /**
+   * Backends that it runs on: both if it is about what differs between them, such as reading back, formats or depth, and else
+   * WebGPU alone, since pictures of the stories hold WebGL to what WebGPU draws.
+   */
   backends: readonly Backend[]
   timeoutSeconds: number
   /**
@@ -55,7 +59,7 @@ export function gpuTest(
   }
   current.tests.push({
     backends: ['webgpu', 'webgl'],
-    timeoutSeconds: 360,
+    timeoutSeconds: 600,
     bakes: false,
     ...options,
     name,

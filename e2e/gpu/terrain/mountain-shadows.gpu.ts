@@ -76,7 +76,8 @@ gpuTest(
     }
     const worst = Math.max(...errors)
     expectTrue(worst < 0.02, `lost light is off by ${worst}`)
-  }
+  },
+  { backends: ['webgpu'] }
 )
 
 gpuTest(
