@@ -128,7 +128,7 @@ function fields(place: Node<'vec2'>, grass: Node<'vec3'>): Node<'vec3'> {
  */
 function grown(color: Node<'vec3'>, noise: (period: number) => Node<'float'>): Node<'vec3'> {
   // Sums of periods without a common multiple: one alone shows as rows.
-  const blades = noise(0.23).add(noise(0.61)).add(noise(1.73)).mul(0.5).toConst()
+  const blades = noise(1.13).add(noise(1.73)).add(noise(0.47).mul(0.4)).mul(0.5).toConst()
   const tufts = noise(4.3).add(noise(11.9)).mul(0.6).add(blades.mul(0.6)).toConst()
   const dry = smoothstep(0.2, 0.9, blades.sub(noise(17)))
   const low = smoothstep(-0.3, -1.1, tufts)
