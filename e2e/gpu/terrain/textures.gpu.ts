@@ -9,7 +9,7 @@ import {
   terrainShadow
 } from '@welkin/atmosphere'
 import { cloudPreset, clouds, cloudShadow } from '@welkin/clouds'
-import { GroundMask, GroundMaps, Terrain, type PageImages } from '@welkin/terrain'
+import { GroundMask, GroundMaps, PageImages, Terrain, type PageRequest } from '@welkin/terrain'
 import {
   DataTexture,
   EquirectangularReflectionMapping,
@@ -28,6 +28,17 @@ import { watchFragmentShaders } from '../harness/shaders'
 /** Textures that a stage may sample on WebGPU's default limits and on WebGL2. */
 const LIMIT = 16
 
+/** Pictures that show nothing. */
+class NoPictures extends PageImages {
+  imageOf({ side }: PageRequest) {
+    return { colors: new Uint8ClampedArray(4 * side ** 2), isWhole: true }
+  }
+
+  loadImage() {
+    return Promise.resolve()
+  }
+}
+
 gpuTest(
   'ground with maps, a mask, pictures, and all that shades it samples no more textures than devices have',
   async t => {
@@ -41,11 +52,7 @@ gpuTest(
     const maps = new GroundMaps({ rock: { albedo: picture, height: picture } }, { size: 16 })
     const area = { west: 0.9, east: 1.1, south: 46.9, north: 47.1 }
     const mask = new GroundMask(picture, { materials: ['rock', 'grass', 'sand'], ...area })
-    const imagery: PageImages = {
-      imageOf: ({ side }) => ({ colors: new Uint8ClampedArray(4 * side ** 2), isWhole: true }),
-      loadImage: () => Promise.resolve()
-    }
-    const options = { resolution: 4, pageMemory: 4, maps, mask, imagery }
+    const options = { resolution: 4, pageMemory: 4, maps, mask, imagery: new NoPictures() }
     const terrain = new Terrain(atmosphere, levelGround, options)
     terrain.receiveShadow = true
     const camera = new PerspectiveCamera(60, 1, 1, 1e7)

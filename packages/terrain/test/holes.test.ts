@@ -1,6 +1,7 @@
 import { Atmosphere } from '@welkin/atmosphere'
 import { Vector3 } from 'three'
 import { expect, it } from 'vitest'
+import { ImageTiles } from '../src/data/ImageTiles'
 import type { HeightSource } from '../src/heights/HeightSource'
 import { groundSharesAt } from '../src/surface/groundSharesAt'
 import { Terrain } from '../src/Terrain'
@@ -49,11 +50,7 @@ it('lets a walker go on where its source has no number', () => {
 })
 
 it('names the sources of its heights and imagery', () => {
-  const imagery = {
-    attribution: 'Pictures by B',
-    imageOf: () => ({ colors: new Uint8ClampedArray(), isWhole: true }),
-    loadImage: () => Promise.resolve()
-  }
+  const imagery = new ImageTiles('memory:{z}/{x}/{y}', { attribution: 'Pictures by B' })
   const heights = { ...known, attribution: 'Heights by A' }
   const linesOf = (source: HeightSource, options = {}): string[] => {
     const made = new Terrain(new Atmosphere({ flat: true }), source, { resolution: 4, ...options })

@@ -4,7 +4,7 @@ import { expect, it, vi } from 'vitest'
 import { MountainHeights } from '../src/heights/MountainHeights'
 import { HeightPages } from '../src/pages/HeightPages'
 import { PageBaker } from '../src/pages/PageBaker'
-import type { PageImages } from '../src/pages/PageImages'
+import { PageImages } from '../src/pages/PageImages'
 import { DEFAULTS } from '../src/TerrainOptions'
 import type { Tile } from '../src/tiles/Tile'
 import { TileTree } from '../src/tiles/TileTree'
@@ -22,7 +22,7 @@ vi.spyOn(PageBaker.prototype, 'bakeImage').mockImplementation((_, tile, _slot, c
 })
 
 /** Pictures from a server: 1 where nothing has come yet, else 2. */
-class Pictures implements PageImages {
+class Pictures extends PageImages {
   readonly #there = new Set<string>()
   #waiting: (() => void)[] = []
   isDown = false

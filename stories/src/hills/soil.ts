@@ -28,7 +28,7 @@ export interface Soil {
 export const meadow: Soil = {
   low: [0.13, 0.16, 0.055],
   high: [0.22, 0.19, 0.15],
-  variation: 0.5,
+  variation: 0.25,
   isFarmed: true
 }
 export const snow: Soil = { low: [0.85, 0.86, 0.87], high: [0.8, 0.81, 0.83], variation: 0.05 }
@@ -128,11 +128,11 @@ function fields(place: Node<'vec2'>, grass: Node<'vec3'>): Node<'vec3'> {
  */
 function grown(color: Node<'vec3'>, noise: (period: number) => Node<'float'>): Node<'vec3'> {
   // Sums of periods without a common multiple: one alone shows as rows.
-  const blades = noise(0.47).add(noise(1.31)).mul(0.6).toConst()
+  const blades = noise(1.13).add(noise(1.73)).add(noise(0.47).mul(0.4)).mul(0.5).toConst()
   const tufts = noise(4.3).add(noise(11.9)).mul(0.6).add(blades.mul(0.6)).toConst()
   const dry = smoothstep(0.2, 0.9, blades.sub(noise(17)))
   const low = smoothstep(-0.3, -1.1, tufts)
-  const lit = color.mul(blades.mul(0.5).add(tufts.mul(0.3)).add(1).max(0.3))
+  const lit = color.mul(blades.mul(0.8).add(tufts.mul(0.2)).add(1).max(0.3))
   return mix(mix(lit, vec3(...STRAW), dry.mul(0.4)), vec3(...BETWEEN), low.mul(0.5))
 }
 

@@ -1,7 +1,8 @@
 import type { Vector3 } from 'three'
 import { withDefaults } from '@welkin/atmosphere'
 import { fail } from '@welkin/geo'
-import type { PageImage, PageImages } from '../pages/PageImages'
+import type { PageImage } from '../pages/ImageLoader'
+import { PageImages } from '../pages/PageImages'
 import type { PageRequest } from '../pages/PageSource'
 import { geographicPlace, geographicY, type GeographicPlace } from './geographic'
 import { mercatorX, mercatorY, tileKey } from './mercator'
@@ -49,9 +50,9 @@ const pixelPlaces = new Uint32Array(4)
  * Until a tile arrives, and where it fails, is corrupt or does not exist, the coarser one is shown. Towards the poles the last row of a Web
  * Mercator map is repeated.
  */
-export class ImageTiles implements PageImages {
+export class ImageTiles extends PageImages {
   /** Line that names the data's source. */
-  readonly attribution: string
+  override readonly attribution: string
   readonly #options: Required<ImageTilesOptions>
   readonly #store: TileStore<ImageTile>
   /** Tile that was found last. */
@@ -65,6 +66,7 @@ export class ImageTiles implements PageImages {
    * @throws If the template lacks a name, or an option is unknown or out of its range.
    */
   constructor(url: string | TileUrl, options: ImageTilesOptions = {}) {
+    super()
     const where = 'ImageTiles'
     const all = withDefaults(where, DEFAULTS, options)
     if (all.scheme !== 'mercator' && all.scheme !== 'geographic') {

@@ -6,7 +6,7 @@ import { levelOf } from '../heights/sampleGround'
 import type { FixedOptions } from '../TerrainOptions'
 import type { Figure } from '../tiles/cpu/figure'
 import type { Tile } from '../tiles/Tile'
-import { ImageLoader } from './ImageLoader'
+import type { ImageLoader } from './ImageLoader'
 import { PageAtlas } from './PageAtlas'
 import { PageBaker, spacingOf } from './PageBaker'
 import { PageLoads } from './PageLoads'
@@ -45,14 +45,14 @@ export class HeightPages {
     source: HeightSource | PageSource,
     figure: Figure,
     options: FixedOptions,
-    onChange: () => void = () => undefined
+    readonly onChange: () => void = () => undefined
   ) {
     const { imagery } = options
     this.#loads = new PageLoads(onChange)
     this.#source = source
     this.atlas = new PageAtlas(options)
     this.#baker = new PageBaker(source, figure, this.atlas, options)
-    this.#images = imagery && new ImageLoader(imagery, tile => this.#baker.request(tile), onChange)
+    this.#images = imagery?.loader(tile => this.#baker.request(tile), onChange) ?? null
     this.#owners = Array.from({ length: this.atlas.capacity }, () => null)
   }
 
@@ -93,7 +93,7 @@ export class HeightPages {
   /** True if missing pages will not come: their heights fail, or all pages of the atlas are in use. */
   get isStuck(): boolean {
     if (this.refused > 0) return this.refused > KEEP_FOR
-    return !this.#loads.isWaiting && this.#images?.loads.isWaiting !== true
+    return this.#loads.open + (this.#images?.loads.open ?? 0) === 0
   }
 
   /** True if a whole face in the last selection is still flat. */

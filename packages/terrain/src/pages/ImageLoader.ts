@@ -1,8 +1,21 @@
 import { fail } from '@welkin/geo'
 import type { Tile } from '../tiles/Tile'
-import type { PageImages } from './PageImages'
 import { PageLoads, type PageLoad } from './PageLoads'
 import type { PageRequest } from './PageSource'
+
+/** Colours of a page. */
+export interface PageImage {
+  /** RGBA of 8 bits, sRGB, row by row, four times `side`² of them; alpha 0 where there is no picture. */
+  readonly colors: Uint8ClampedArray
+  /** True if no better ones can be loaded. */
+  readonly isWhole: boolean
+}
+
+/** Methods of `PageImages` that a loader calls. */
+export interface LoadedImages {
+  imageOf(request: PageRequest): PageImage
+  loadImage(request: PageRequest, signal: AbortSignal): Promise<void>
+}
 
 /** Selections that a page waits for its picture; then it is drawn with what has arrived. */
 const PATIENCE = 30
@@ -15,12 +28,12 @@ const MOST_REDRAWN = 2
 
 /** Pictures of pages: each is loaded before its page is drawn if it comes soon, else after. */
 export class ImageLoader {
-  readonly #images: PageImages
+  readonly #images: LoadedImages
   readonly #requestOf: (tile: Tile) => PageRequest
   readonly loads: PageLoads<void>
 
   /** @param onChange - See `PageLoads`. */
-  constructor(images: PageImages, requestOf: (tile: Tile) => PageRequest, onChange: () => void) {
+  constructor(images: LoadedImages, requestOf: (tile: Tile) => PageRequest, onChange: () => void) {
     this.#images = images
     this.#requestOf = requestOf
     this.loads = new PageLoads(onChange)

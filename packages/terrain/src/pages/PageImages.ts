@@ -1,20 +1,14 @@
+import type { Tile } from '../tiles/Tile'
+import { ImageLoader, type LoadedImages, type PageImage } from './ImageLoader'
 import type { PageRequest } from './PageSource'
 
-/** Colours of a page. */
-export interface PageImage {
-  /** RGBA of 8 bits, sRGB, row by row, four times `side`² of them; alpha 0 where there is no picture. */
-  readonly colors: Uint8ClampedArray
-  /** True if no better ones can be loaded. */
-  readonly isWhole: boolean
-}
-
 /** Imagery of a planet's ground that may take time to arrive. */
-export interface PageImages {
+export abstract class PageImages implements LoadedImages {
   /** Line that names the data's source. */
   readonly attribution?: string
 
   /** Colours in memory now: coarse ones, or none, where finer ones have not arrived. */
-  imageOf(request: PageRequest): PageImage
+  abstract imageOf(request: PageRequest): PageImage
 
   /**
    * Loads what is missing of a page.
@@ -22,5 +16,10 @@ export interface PageImages {
    * @param signal - Aborted when nobody needs the page any more.
    * @returns Resolved when `imageOf` has better colours. If it is rejected, they are asked for again later.
    */
-  loadImage(request: PageRequest, signal: AbortSignal): Promise<void>
+  abstract loadImage(request: PageRequest, signal: AbortSignal): Promise<void>
+
+  /** Loader of pictures for a terrain's pages. */
+  loader(requestOf: (tile: Tile) => PageRequest, onChange: () => void): ImageLoader {
+    return new ImageLoader(this, requestOf, onChange)
+  }
 }

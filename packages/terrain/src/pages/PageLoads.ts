@@ -31,18 +31,15 @@ export class PageLoads<T> {
     this.#onChange = onChange
   }
 
+  /** Number of loads that have not failed. */
+  get open(): number {
+    return [...this.#loads.values()].filter(({ state }) => state === 'loading' || state === 'there')
+      .length
+  }
+
   /** True if there are as many loads as there may be at once. */
   get isFull(): boolean {
-    return this.#open.length >= MOST_LOADS
-  }
-
-  /** True if there is a load that has not failed. */
-  get isWaiting(): boolean {
-    return this.#open.length > 0
-  }
-
-  get #open(): PageLoad<T>[] {
-    return [...this.#loads.values()].filter(({ state }) => state === 'loading' || state === 'there')
+    return this.open >= MOST_LOADS
   }
 
   /** Tiles with loads. */

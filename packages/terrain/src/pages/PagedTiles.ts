@@ -39,16 +39,14 @@ export class PagedTiles {
   #pagesLeft = 0
 
   readonly #horizon: TerrainHorizon | null
-  readonly #onChange: () => void
 
   /** @param onChange - See `Terrain.onChange`. */
   constructor(
     source: HeightSource | PageSource,
     figure: Figure,
     options: FixedOptions,
-    onChange: () => void = () => undefined
+    onChange?: () => void
   ) {
-    this.#onChange = onChange
     const { resolution, detail, horizon } = options
     const cells = (2 * figure.maximumRadius) / resolution / FINEST_CELL
     const finestLevel = Math.max(Math.ceil(Math.log2(cells)), 0)
@@ -92,7 +90,7 @@ export class PagedTiles {
     if (selection.lag === 0 || isStuck) this.#lastLag = selection.lag
     // What is out of view makes room some drawings later.
     const waits = pages.refused > 0 && !pages.isStuck
-    if (fades || waits || pages.drawn !== before) this.#onChange()
+    if (fades || waits || pages.drawn !== before) pages.onChange()
     if (!viewer.isOverGround) return
     this.#horizon?.cull(selection, viewer, tree.figure, pages.atlas.heightSide - 1)
   }

@@ -7,16 +7,7 @@ import {
 } from 'three'
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js'
 import { randomSequence } from '../../random'
-import {
-  ball,
-  BARK,
-  GOLDEN,
-  LEAVES,
-  painted,
-  SHADE,
-  trunk,
-  type Color
-} from '../../valley/treeShapes'
+import { BARK, GOLDEN, LEAVES, trunk, type Color } from '../../valley/treeShapes'
 
 /** Shape of a broad-leaved tree. */
 interface Shape {
@@ -26,7 +17,7 @@ interface Shape {
   /** Greatest radius of the crown, and its height as a part of the crown's [m, –]. */
   readonly radius: number
   readonly widest: number
-  /** Boughs, each with a clump of leaves at its end, and sprays of leaves of each. */
+  /** Boughs, and sprays of leaves along the outer part of each. */
   readonly boughs: number
   readonly sprays: number
   readonly leaves: Color
@@ -42,7 +33,7 @@ const SHAPES = {
     base: 1.9,
     radius: 3.1,
     widest: 0.4,
-    boughs: 26,
+    boughs: 32,
     sprays: 11,
     leaves: LEAVES,
     bark: BARK,
@@ -53,7 +44,7 @@ const SHAPES = {
     base: 2.3,
     radius: 1.75,
     widest: 0.32,
-    boughs: 20,
+    boughs: 26,
     sprays: 9,
     leaves: [0.076, 0.104, 0.029],
     bark: [0.2, 0.185, 0.165],
@@ -62,14 +53,20 @@ const SHAPES = {
 } satisfies Record<string, Shape>
 
 /** Part of the crown's radius out to which leaves are in the shade of others. */
-const INNER = 0.55
+const INNER = 0.4
+
+/** Parts of a bough between which it has leaves. */
+const LEAFY = [0.3, 1.06] as const
+
+/** Height of the leaves about a bough over their width: each bough is a layer of its own. */
+const FLATNESS = 0.62
 
 /** Radius of the crown at a part of its height, over its greatest. */
 const profile = (up: number, widest: number): number =>
   Math.sqrt(Math.max(1 - ((up - widest) / (up < widest ? widest * 1.1 : 1.04 - widest)) ** 2, 0.02))
 
 /**
- * A broad-leaved tree: boughs about a trunk, all the way up, with clumps of leaves at their ends, darker within and below.
+ * A broad-leaved tree: boughs about a trunk, all the way up, with leaves along them, darker within and below.
  *
  * @returns With colours, and texture coordinates for `setFoliage`.
  */
@@ -83,26 +80,29 @@ export function broadleaf(kind: keyof typeof SHAPES): BufferGeometry {
     sprays,
     leaves,
     bark,
-    trunk: foot
+    trunk: thickness
   }: Shape = SHAPES[kind]
   const random = randomSequence(29)
   const middle = new Vector3(0, MathUtils.lerp(base, height, 0.45), 0)
-  const parts: BufferGeometry[] = [trunk(0.8 * height, foot, bark, 6)]
-  const [clump, outwards, facing, vertex, inTree] = Array.from({ length: 5 }, () => new Vector3())
+  const parts: BufferGeometry[] = [trunk(0.9 * height, thickness, bark, 6)]
+  const [foot, tip, outwards, facing, vertex, inTree] = Array.from(
+    { length: 6 },
+    () => new Vector3()
+  )
   const crownHeight = height - base
   for (let i = 0; i < boughs; i++) {
     const up = (i + 0.5 + 0.6 * (random() - 0.5)) / boughs
     const turn = GOLDEN * i + 0.7 * random()
-    const reach = radius * profile(up, widest) * (0.62 + 0.3 * random())
+    const reach = radius * profile(up, widest) * (0.62 + 0.3 * random()) * (1 - up ** 6)
     const size = radius * MathUtils.lerp(0.36, 0.26, up) * (0.8 + 0.45 * random())
-    clump.set(reach * Math.cos(turn), base + crownHeight * up, reach * Math.sin(turn))
-    clump.y = Math.min(clump.y, height - 0.6 * size)
-    // A bough leaves the trunk below its clump.
-    const root = Math.max(clump.y - 0.9 * reach - 0.3, 0.75 * base)
-    const bough = clump.clone().sub(vertex.set(0, root, 0))
-    const limb = trunk(bough.length(), foot * MathUtils.lerp(0.36, 0.12, up), bark, 3)
+    tip.set(reach * Math.cos(turn), base + crownHeight * up, reach * Math.sin(turn))
+    tip.y = Math.min(tip.y, height - 0.4 * size)
+    // It rises from the trunk.
+    foot.set(0, Math.max(tip.y - 0.9 * reach - 0.3, 0.75 * base), 0)
+    const bough = tip.clone().sub(foot)
+    const limb = trunk(bough.length(), thickness * MathUtils.lerp(0.36, 0.12, up), bark, 3)
     limb.rotateX(Math.acos(bough.y / bough.length())).rotateY(Math.atan2(bough.x, bough.z))
-    parts.push(limb.translate(0, root, 0))
+    parts.push(limb.translate(0, foot.y, 0))
     for (let j = 0; j < sprays; j++) {
       const y = 1 - (2 * (j + 0.5)) / sprays
       const level = Math.sqrt(1 - y * y)
@@ -115,10 +115,12 @@ export function broadleaf(kind: keyof typeof SHAPES): BufferGeometry {
         .multiplyScalar(1.9)
         .add(outwards)
       spray.lookAt(facing.normalize())
-      const place = outwards
-        .clone()
-        .multiplyScalar(0.75 * size)
-        .add(clump)
+      // Any order along the bough will do that has nothing to do with the direction.
+      const along = MathUtils.lerp(...LEAFY, Math.sqrt((((5 * j) % sprays) + random()) / sprays))
+      const about = foot.clone().lerp(tip, along)
+      const place = outwards.clone().multiplyScalar(0.6 * size)
+      place.y *= FLATNESS
+      place.add(about)
       spray.translate(place.x, place.y, place.z)
       const wide = radius * profile(MathUtils.clamp((place.y - base) / crownHeight, 0, 1), widest)
       const depth = MathUtils.smoothstep(Math.hypot(place.x, place.z) / wide, INNER, 1)
@@ -130,7 +132,7 @@ export function broadleaf(kind: keyof typeof SHAPES): BufferGeometry {
         uv.setX(k, 0.5 * uv.getX(k))
         vertex.fromBufferAttribute(position, k)
         inTree.copy(vertex).sub(middle).normalize()
-        vertex.sub(clump).normalize().addScaledVector(inTree, 0.8).addScaledVector(facing, 0.25)
+        vertex.sub(about).normalize().addScaledVector(inTree, 0.8).addScaledVector(facing, 0.25)
         vertex.normalize()
         normal.setXYZ(k, vertex.x, vertex.y, vertex.z)
         colors.push(...leaves.map(part => part * shade))
@@ -138,7 +140,5 @@ export function broadleaf(kind: keyof typeof SHAPES): BufferGeometry {
       parts.push(spray.setAttribute('color', new Float32BufferAttribute(colors, 3)))
     }
   }
-  const core = ball(1).scale(0.3 * radius, 0.28 * crownHeight, 0.3 * radius)
-  parts.push(painted(core.translate(0, middle.y + 0.1, 0), SHADE))
   return mergeGeometries(parts)
 }

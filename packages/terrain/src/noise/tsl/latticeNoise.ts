@@ -19,6 +19,8 @@ export const REFERENCE_STEP = 256
 /** Bits of the number 1, with which those of all numbers in [1, 2) begin. */
 const ONE = 0x3f800000
 
+type Triple = [number, number, number]
+
 type UVariable = Record<'x' | 'y' | 'z', UInt & { addAssign(n: Node): void; assign(n: Node): void }>
 
 /**
@@ -84,17 +86,19 @@ export const latticeNoise = /*#__PURE__*/ Fn(
     const sum = vec4(0).toVar()
     for (let i = 0; i < 8; i++) {
       const [x, y, z] = [i & 1, (i >> 1) & 1, i >> 2]
+      const sign = [x, y, z].map(part => 2 * part - 1) as Triple
       const gradient = latticeGradient(origin.add(uvec3(x, y, z))).toConst()
       const value = gradient.dot(part.sub(vec3(x, y, z))).toConst()
-      const wx = x === 1 ? blend.x : blend.x.oneMinus()
-      const wy = y === 1 ? blend.y : blend.y.oneMinus()
-      const wz = z === 1 ? blend.z : blend.z.oneMinus()
-      const turn = vec3(
-        wy.mul(wz).mul(2 * x - 1),
-        wx.mul(wz).mul(2 * y - 1),
-        wx.mul(wy).mul(2 * z - 1)
-      ).mul(slope)
-      const weight = wx.mul(wy).mul(wz)
+      // Weights along the axes: the blend towards corners beyond, and what it leaves.
+      const w = blend
+        .mul(vec3(...sign))
+        .add(vec3(1 - x, 1 - y, 1 - z))
+        .toConst() as Vec3
+      const turn = w.yzx
+        .mul(w.zxy)
+        .mul(vec3(...sign))
+        .mul(slope)
+      const weight = w.x.mul(w.y).mul(w.z)
       sum.addAssign(vec4(gradient.mul(weight).add(turn.mul(value)), value.mul(weight)))
     }
     return sum

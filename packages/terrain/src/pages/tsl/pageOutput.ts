@@ -69,18 +69,20 @@ const upAt = (tile: PageUniforms, { fromCenter }: PagePlace): Vec3 => {
   return figure.upAt(center.add(fromCenter), radii.x.div(radii)).toConst()
 }
 
-const patchAt = (tile: PageUniforms, { reference, offset }: PagePlace, shortest: Float): Float =>
-  patches(reference, offset, shortest, tile.seed)
-
-const climateAt = (tile: PageUniforms, { reference, offset }: PagePlace): Float =>
-  climates(reference, offset, tile.shortest, tile.seed).w
+/** Texel for vertices: height, and climate with the share of the sky. */
+const vertexTexel = (
+  { shortest, seed }: PageUniforms,
+  { reference, offset }: PagePlace,
+  height: Float,
+  sky: Float
+): Vec4 => vec4(height, packed(climates(reference, offset, shortest, seed).w, sky), 0, 1)
 
 /** Height, and climate with the share of the sky, of a vertex, from a function. */
 export const heightsOf = (source: HeightSource, tile: PageUniforms, side: number): Vec4 =>
   Fn(() => {
     const place = placeAt(tile, faceAxes(tile.face), texelOf(side), side)
     const ground = heightAndSky(source, place, upAt(tile, place), tile.shortest).toConst()
-    return vec4(ground.x, packed(climateAt(tile, place), ground.y), 0, 1)
+    return vertexTexel(tile, place, ground.x, ground.y)
   })()
 
 /** Texel for pixels: the gradient along the ellipsoid by a face's axes, height and patchiness. */
@@ -94,7 +96,8 @@ function surfaceTexel(
   const up = upAt(tile, place)
   const gradient = gradientAlong(ground.gradient, up).toConst()
   const along = vec2(gradient.dot(first), gradient.dot(second))
-  return vec4(along, ground.height, patchAt(tile, place, shortest))
+  const { reference, offset } = place
+  return vec4(along, ground.height, patches(reference, offset, shortest, tile.seed))
 }
 
 /** Gradient, height and patchiness for pixels, from a function. */
@@ -143,12 +146,7 @@ export const loadedHeightsOf = (
     const index = texel.y.mul(side).add(texel.x).toConst()
     const row = index.add(0.5).div(wide).floor().toConst()
     const sky = loaded(heights, tile, vec2(index.sub(row.mul(wide)), row.add(wide)))
-    return vec4(
-      loaded(heights, tile, texel.mul(density).add(1)),
-      packed(climateAt(tile, place), sky),
-      0,
-      1
-    )
+    return vertexTexel(tile, place, loaded(heights, tile, texel.mul(density).add(1)), sky)
   })()
 
 /** Gradient by central differences, height and patchiness for pixels, from heights that were loaded. */

@@ -21,22 +21,20 @@ const SAND_BUMP = 0.02
 const GRAIN_VARIANCE = 0.3
 
 // Reflectances, linear sRGB: rock and sand of the ASTER library's order, snow of a few days, grass of early summer.
-const ROCK = [0.19, 0.176, 0.158]
-const DARK_ROCK = [0.105, 0.098, 0.092]
-const SCREE = [0.238, 0.228, 0.21]
-const TUNDRA = [0.095, 0.088, 0.05]
-const SAND = [0.4, 0.32, 0.215]
-const DESERT = [0.39, 0.265, 0.15]
-const GRASS = [0.066, 0.1, 0.03]
-const SOIL = [0.052, 0.04, 0.027]
-const STRAW = [0.235, 0.195, 0.092]
-const HEATH = [0.056, 0.058, 0.029]
-const FOREST = [0.019, 0.031, 0.013]
-const BROADLEAF = [0.036, 0.051, 0.016]
-const SHRUB = [0.026, 0.034, 0.015]
-const SNOW = [0.83, 0.86, 0.9]
-
-const color = ([r, g, b]: number[]): Vec3 => vec3(r, g, b)
+const ROCK = /*#__PURE__*/ vec3(0.19, 0.176, 0.158)
+const DARK_ROCK = /*#__PURE__*/ vec3(0.105, 0.098, 0.092)
+const SCREE = /*#__PURE__*/ vec3(0.238, 0.228, 0.21)
+const TUNDRA = /*#__PURE__*/ vec3(0.095, 0.088, 0.05)
+const SAND = /*#__PURE__*/ vec3(0.4, 0.32, 0.215)
+const DESERT = /*#__PURE__*/ vec3(0.39, 0.265, 0.15)
+const GRASS = /*#__PURE__*/ vec3(0.066, 0.1, 0.03)
+const SOIL = /*#__PURE__*/ vec3(0.052, 0.04, 0.027)
+const STRAW = /*#__PURE__*/ vec3(0.235, 0.195, 0.092)
+const HEATH = /*#__PURE__*/ vec3(0.056, 0.058, 0.029)
+const FOREST = /*#__PURE__*/ vec3(0.019, 0.031, 0.013)
+const BROADLEAF = /*#__PURE__*/ vec3(0.036, 0.051, 0.016)
+const SHRUB = /*#__PURE__*/ vec3(0.026, 0.034, 0.015)
+const SNOW = /*#__PURE__*/ vec3(0.83, 0.86, 0.9)
 
 /** Surface of the ground at a place. */
 export interface GroundSurface {
@@ -89,7 +87,7 @@ export function groundSurface(
   // Dark between stones, and between blades.
   const stony = stone.mul(0.45).add(1).toConst()
   const light = blade.mul(1.05).add(tuft.mul(0.2)).toConst()
-  const rock = mix(color(DARK_ROCK), color(ROCK), tone.mul(1.1).add(0.55).clamp(0, 1)).mul(stony)
+  const rock = mix(DARK_ROCK, ROCK, tone.mul(1.1).add(0.55).clamp(0, 1)).mul(stony)
   // Drier and fresher spots of metres, dry blades and soil of centimetres: the brightest and the darkest of the picture.
   const spots = boulder.mul(0.8).add(tuft.mul(0.5)).add(brush.mul(0.9)).toConst()
   const parched = patch
@@ -104,28 +102,24 @@ export function groundSurface(
   // Heather and dwarf shrubs lie in patches, more of them towards the tree line.
   const high = smoothstep(-900, 100, overTrees).toConst()
   const heath = smoothstep(-0.1, 0.35, spots.sub(patch.mul(0.9)).add(high.mul(0.4)).sub(0.4))
-  const turf = mix(mix(color(GRASS), color(STRAW), straw), color(HEATH), heath.mul(0.65))
+  const turf = mix(mix(GRASS, STRAW, straw), HEATH, heath.mul(0.65))
   const blades = turf.mul(light.add(brush.mul(0.35)).add(1).max(0.2))
-  const grassland = mix(blades, color(SOIL), smoothstep(0.08, 0.28, blade.negate()).mul(0.8))
+  const grassland = mix(blades, SOIL, smoothstep(0.08, 0.28, blade.negate()).mul(0.8))
   // Shrubs stand in it, more of them towards the woods.
   const shrubs = smoothstep(0.3, 0.5, crown.add(patch.sub(dryness).mul(0.35)).sub(0.05)).toConst()
-  const meadow = mix(grassland, color(SHRUB), shrubs.mul(0.75)).toConst() as Vec3
-  const leaves = mix(
-    color(FOREST),
-    color(BROADLEAF),
-    smoothstep(-0.5, 0.5, brush.mul(1.5).add(climate))
-  )
+  const meadow = mix(grassland, SHRUB, shrubs.mul(0.75)).toConst() as Vec3
+  const leaves = mix(FOREST, BROADLEAF, smoothstep(-0.5, 0.5, brush.mul(1.5).add(climate)))
   const floor = leaves.mul(light.mul(1.3).add(crown.mul(1.2)).add(1).max(0.3))
   const forest = mix(meadow, floor, tone.mul(0.2).add(0.85).clamp(0, 1))
-  const desert = color(DESERT).mul(tone.mul(0.35).add(1)).mul(stony)
+  const desert = DESERT.mul(tone.mul(0.35).add(1)).mul(stony)
   // Turf of sedges and lichen lies between the stones, most of it just above the trees.
   const turfed = smoothstep(-0.45, 0.3, patch.sub(overTrees.mul(1 / 2500)).add(stone.mul(-0.5)))
-  const stones = color(SCREE).mul(tone.mul(0.6).add(1).clamp(0.4, 1.3))
-  const scree = mix(stones, color(TUNDRA), turfed.mul(0.75)).mul(stony)
+  const stones = SCREE.mul(tone.mul(0.6).add(1).clamp(0.4, 1.3))
+  const scree = mix(stones, TUNDRA, turfed.mul(0.75)).mul(stony)
   const tangle = blade.add(boulder.mul(0.3)).toConst() as Float
-  const sand = color(SAND).mul(stone.mul(0.03).add(tuft.mul(0.06)).add(patch.mul(0.35)).add(1))
+  const sand = SAND.mul(stone.mul(0.03).add(tuft.mul(0.06)).add(patch.mul(0.35)).add(1))
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.06))).toConst()
-  const colors = { snow: color(SNOW), rock, sand, scree, desert, forest, grass: meadow }
+  const colors = { snow: SNOW, rock, sand, scree, desert, forest, grass: meadow }
   const mapped = maps?.groundAt(place, layers, colors)
   /** A value as made up, and that of maps where there are any. */
   const either = (own: Float, ofMaps: (ground: MappedGround) => Float): Float =>
