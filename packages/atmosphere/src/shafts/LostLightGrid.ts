@@ -26,12 +26,12 @@ const NEAR_MEAN = 0.2
 /** Part of the light of air that shadows take at most where there are none to speak of. Greater: halos at silhouettes and at edges of clouds. */
 const LEAST_LOST = 5e-4
 
-/** Octaves that no depth has. */
+/** Octaves that all depths are below. */
 const MOST_DEPTH = 64
 
 /**
- * Octaves beyond all depths: those of means where next to nothing is lost, where light is steep, and of pixels whose grounds are at different depths.
- * These are negative where light is steep.
+ * Octaves beyond all depths: those of means where next to nothing is lost, where light is steep, and of pixels whose grounds are at different depths;
+ * less than nought for these where light is not steep.
  */
 const LIT_DEPTH = 512
 const STEEP_DEPTH = 540
@@ -113,10 +113,10 @@ export interface LostLight extends SeenAir {
  * depth: from nine, of which any four that touch have samples in all places of their steps.
  *
  * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
- * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of
- * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and of four beside
- * silhouettes and edges of clouds. Those that are alike in light and depth count most. One that is farther than all loses light up to their depth:
- * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
+ * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels read nine pixels of the grid, or the
+ * four around beside silhouettes and edges of clouds. Those that are alike in light and depth count most. They lose as much as these at their own depth, or where
+ * light is steep, as about the sun, the same part of their own light, which is looked up. A pixel that is farther than all loses light up to their depth:
+ * they know nothing of the air beyond.
  *
  * A depth is log₂ of the optical path of clear air, which thins out with height, that has as much light as is seen: clouds hide some of it.
  * It is a measure, no more: a pixel finds 1/τ², which needs no root and no quotient.
@@ -239,7 +239,7 @@ export class LostLightGrid {
       const isEven = apart.y.lessThan(MIXED_OCTAVES).and(most.y.lessThan(MAX_MIXED))
       const isLit = most.z.max(least.z.negate()).lessThan(most.y.exp2().mul(LEAST_LOST))
       const depth = result.w.add(isEven.select(0, STEEP_DEPTH))
-      const far = isEven.select(APART_DEPTH, -APART_DEPTH)
+      const far = isEven.select(-APART_DEPTH, APART_DEPTH)
       const marked = apart.x.lessThan(SAME_DEPTH).select(depth, far)
       result.w.assign(isLit.select(LIT_DEPTH, marked))
     })
@@ -299,12 +299,7 @@ export class LostLightGrid {
       const place = middle.div(this.#texelSize).sub(1).toConst() as Vec2
       const isApart = mean.w.abs().greaterThan(STEEP_LIMIT)
       const first = isApart.select(place.floor().add(0.5), place).toConst() as Vec2
-      const isSteep = mean.w
-        .sub(STEEP_LIMIT / 2)
-        .abs()
-        .lessThan(STEEP_LIMIT / 2 - MOST_DEPTH)
-        .or(mean.w.lessThan(-MOST_DEPTH))
-        .toConst()
+      const isSteep = mean.w.greaterThan(MOST_DEPTH).toConst()
       // Steps of a depth show where the nearest to it counts for more than others.
       const similar = (tolerance ?? float(0)).mul(2).max(SIMILAR).toConst()
       const even = similar.mul(similar).toConst()
