@@ -116,13 +116,17 @@ export class CloudBench {
   }
 
   /** Draws frames at 60 a second, or one moment again and again; median GPU time [ms]. */
-  async time(frames: number, isStill = false): Promise<{ ms: number; passes: number[] }> {
+  async time(
+    frames: number,
+    isStill = false,
+    warmUp = WARM_UP
+  ): Promise<{ ms: number; passes: number[] }> {
     const totals: number[] = []
     const each: number[][] = []
-    for (let i = 0; i < WARM_UP + frames; i++) {
+    for (let i = 0; i < warmUp + frames; i++) {
       this.draw(isStill)
       const ms = await gpuMilliseconds(this.#renderer)
-      if (i < WARM_UP) continue
+      if (i < warmUp) continue
       totals.push(ms)
       gpuPasses(this.#renderer).forEach((value, k) => (each[k] ??= []).push(value))
     }

@@ -1,6 +1,9 @@
 import type { Quaternion } from 'three'
 import { Vector3 } from 'three'
-import { CASCADE_RATIO } from './tsl/shadowRay'
+import type { CloudLayers } from '../layers/CloudLayers'
+import { number, vector4 } from '../uniforms'
+import type { CascadeNodes } from './tsl/sampleShadows'
+import { CASCADE_RATIO, MAXIMUM_DISTANCE } from './tsl/shadowRay'
 
 /** Texels along an edge of a cascade. */
 export const CASCADE_SIZE = 256
@@ -47,6 +50,24 @@ const MOST_TOLERANCE = 4
 export const lightTolerance = ({ halfWidth }: CascadeState): number =>
   Math.min(halfWidth / HALF_WIDTHS[0], MOST_TOLERANCE)
 
+/** Altitude up to which layers cast shadows; 0 if none does [m]. */
+export const shadowTop = (layers: CloudLayers): number =>
+  [...layers].reduce((top, { parameters: { shadow, coverage, topAltitude } }) => {
+    const casts = shadow && coverage > 0
+    return casts ? Math.max(top, topAltitude) : top
+  }, 0)
+
+/** Uniforms of a cascade that is not drawn yet. */
+export const cascadeNodes = (): CascadeNodes => ({
+  u: vector4(),
+  v: vector4(),
+  w: vector4(),
+  isDrawn: number(),
+  isCast: number(),
+  isShort: number(),
+  atlasTile: number()
+})
+
 const _normal = new Vector3()
 const _offset = new Vector3()
 
@@ -80,6 +101,14 @@ export class CascadeState {
   /** Width of a texel [m]. */
   get texel(): number {
     return (2 * this.halfWidth) / CASCADE_SIZE
+  }
+
+  /** Distance from the planet's centre that all rays of light reach; 0 under low light, for which the plane is tilted [m]. */
+  get reach(): number {
+    const { light, anchor, halfWidth } = this
+    const radius = anchor.length()
+    const slope = light.dot(anchor) / radius
+    return slope < LEAST_SLOPE ? 0 : radius + slope * MAXIMUM_DISTANCE * halfWidth
   }
 
   /**

@@ -21,6 +21,7 @@ import type { CloudsNode } from '../march/CloudsNode'
 import type { CloudCaster } from '../light/tsl/shadingContext'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
+import { shadowTop } from './CascadeState'
 import { CloudForeground } from './CloudForeground'
 import { DiffuseRatioTable } from './DiffuseRatioTable'
 import { sampleShadowsAlong } from './tsl/sampleShadows'
@@ -57,10 +58,7 @@ class CastShadow implements AirShadow, CloudCaster {
 
   get isCast(): boolean {
     const { isDisposed, field } = this.#clouds
-    const casts = [...field.layers].some(
-      ({ parameters }) => parameters.shadow && parameters.coverage > 0
-    )
-    return !isDisposed && field.fadeIn > 0 && casts
+    return !isDisposed && field.fadeIn > 0 && shadowTop(field.layers) > 0
   }
 
   update(view: AtmosphereView, renderer: Renderer): void {

@@ -7,11 +7,13 @@ import type { Renderer } from 'three/webgpu'
 import { viewpointMapped, type CloudField } from '../density/CloudField'
 import {
   CASCADE_SIZE as SIZE,
+  cascadeNodes,
   CascadeState,
   HALF_WIDTHS,
   LIGHT_JUMP,
   lightTolerance,
   PLACE_JUMP,
+  shadowTop,
   STALE_DRIFT,
   STALE_LIGHT,
   STALE_PLACE,
@@ -21,7 +23,7 @@ import type { CascadeNodes, CloudShadows } from './tsl/sampleShadows'
 import type { ShadingFall } from './tsl/fallDepth'
 import { shadowRay, type ShadowRayUniforms } from './tsl/shadowRay'
 import type { LevelTexture, Vec2 } from '../tsl-types'
-import { number, vector2, vector3, vector4 } from '../uniforms'
+import { number, vector2, vector3 } from '../uniforms'
 
 /**
  * Height of the camera above which cascades double in width with each doubling of it [m]. Greater: shadows
@@ -115,14 +117,7 @@ export class CloudShadowMap {
     const width = SIZE * (HALF_WIDTHS.length + 1) + TABLE_COLUMNS
     this.target = tableTarget('Welkin.CloudShadows', width, SIZE)
     this.#cascades = HALF_WIDTHS.map((_, i) => ({
-      nodes: {
-        u: vector4(),
-        v: vector4(),
-        w: vector4(),
-        isDrawn: number(),
-        isCast: number(),
-        atlasTile: number()
-      },
+      nodes: cascadeNodes(),
       isDrawn: false,
       state: new CascadeState(i, field.rotations)
     }))
@@ -302,10 +297,12 @@ export class CloudShadowMap {
 
   /** Sets the uniforms of look-ups, for the camera and the clouds where they are now. */
   #updateNodes(): void {
+    const top = this.field.radius.value + shadowTop(this.field.layers)
     for (const { nodes, isDrawn, state } of this.#cascades) {
       nodes.isCast.value = isDrawn ? 1 : 0
       nodes.isDrawn.value = isDrawn && this.#isNear ? 1 : 0
       if (!isDrawn) continue
+      nodes.isShort.value = state.reach < top ? 1 : 0
       const { atlasTile, halfWidth, anchor, across, measure, normal, center } = state
       nodes.atlasTile.value = atlasTile
       _offset.copy(this.camera).sub(anchor).sub(this.#driftOf(state, _drift))
