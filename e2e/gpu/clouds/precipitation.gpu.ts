@@ -14,10 +14,9 @@ import {
   lightPrecipitation,
   type CloudsAbove
 } from '../../../packages/clouds/src/precipitation/tsl/lightPrecipitation'
-import { cascadeNodes } from '../../../packages/clouds/src/shadow/CascadeState'
 import type { CloudShadows } from '../../../packages/clouds/src/shadow/tsl/sampleShadows'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../../../packages/clouds/src/tsl-types'
-import { number, vector2, vector3 } from '../../../packages/clouds/src/uniforms'
+import { number, vector2, vector3, vector4 } from '../../../packages/clouds/src/uniforms'
 import { evenClouds, mean, type CloudScene } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'
@@ -87,12 +86,12 @@ function rainInTheEast(
   const texel = Uint16Array.from([1, 0, SHADE, SHADE], value => DataUtils.toHalfFloat(value))
   const dark = new DataTexture(texel, 1, 1, RGBAFormat, HalfFloatType)
   dark.needsUpdate = true
-  const cascade = cascadeNodes()
-  const { u, v, w } = cascade
+  const [u, v, w] = [vector4(), vector4(), vector4()]
   // All places lie in its middle.
   u.value.set(0, 0, 0, 0.5)
   v.value.set(0, 0, 0, 0.5)
   w.value.set(0, 0, 0, 0)
+  const cascade = { u, v, w, isDrawn: number(), isCast: number(), isShort: number(), atlasTile: number() }
   const shadows: CloudShadows = {
     map: texture(dark) as unknown as LevelTexture<Vec2>,
     cascades: [cascade],

@@ -1,8 +1,5 @@
 import type { Quaternion } from 'three'
 import { Vector3 } from 'three'
-import type { CloudLayers } from '../layers/CloudLayers'
-import { number, vector4 } from '../uniforms'
-import type { CascadeNodes } from './tsl/sampleShadows'
 import { CASCADE_RATIO, MAXIMUM_DISTANCE } from './tsl/shadowRay'
 
 /** Texels along an edge of a cascade. */
@@ -49,24 +46,6 @@ const MOST_TOLERANCE = 4
 /** Change of the light's direction that a cascade tolerates over the narrowest one: as much as its texels are wider. */
 export const lightTolerance = ({ halfWidth }: CascadeState): number =>
   Math.min(halfWidth / HALF_WIDTHS[0], MOST_TOLERANCE)
-
-/** Altitude up to which layers cast shadows; 0 if none does [m]. */
-export const shadowTop = (layers: CloudLayers): number =>
-  [...layers].reduce((top, { parameters: { shadow, coverage, topAltitude } }) => {
-    const casts = shadow && coverage > 0
-    return casts ? Math.max(top, topAltitude) : top
-  }, 0)
-
-/** Uniforms of a cascade that is not drawn yet. */
-export const cascadeNodes = (): CascadeNodes => ({
-  u: vector4(),
-  v: vector4(),
-  w: vector4(),
-  isDrawn: number(),
-  isCast: number(),
-  isShort: number(),
-  atlasTile: number()
-})
 
 const _normal = new Vector3()
 const _offset = new Vector3()

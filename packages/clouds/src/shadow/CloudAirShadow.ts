@@ -21,7 +21,6 @@ import type { CloudsNode } from '../march/CloudsNode'
 import type { CloudCaster } from '../light/tsl/shadingContext'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
-import { shadowTop } from './CascadeState'
 import { CloudForeground } from './CloudForeground'
 import { DiffuseRatioTable } from './DiffuseRatioTable'
 import { sampleShadowsAlong } from './tsl/sampleShadows'
@@ -58,7 +57,10 @@ class CastShadow implements AirShadow, CloudCaster {
 
   get isCast(): boolean {
     const { isDisposed, field } = this.#clouds
-    return !isDisposed && field.fadeIn > 0 && shadowTop(field.layers) > 0
+    const casts = [...field.layers].some(
+      ({ parameters }) => parameters.shadow && parameters.coverage > 0
+    )
+    return !isDisposed && field.fadeIn > 0 && casts
   }
 
   update(view: AtmosphereView, renderer: Renderer): void {

@@ -7,13 +7,11 @@ import type { Renderer } from 'three/webgpu'
 import { viewpointMapped, type CloudField } from '../density/CloudField'
 import {
   CASCADE_SIZE as SIZE,
-  cascadeNodes,
   CascadeState,
   HALF_WIDTHS,
   LIGHT_JUMP,
   lightTolerance,
   PLACE_JUMP,
-  shadowTop,
   STALE_DRIFT,
   STALE_LIGHT,
   STALE_PLACE,
@@ -23,7 +21,7 @@ import type { CascadeNodes, CloudShadows } from './tsl/sampleShadows'
 import type { ShadingFall } from './tsl/fallDepth'
 import { shadowRay, type ShadowRayUniforms } from './tsl/shadowRay'
 import type { LevelTexture, Vec2 } from '../tsl-types'
-import { number, vector2, vector3 } from '../uniforms'
+import { number, vector2, vector3, vector4 } from '../uniforms'
 
 /**
  * Height of the camera above which cascades double in width with each doubling of it [m]. Greater: shadows
@@ -117,7 +115,15 @@ export class CloudShadowMap {
     const width = SIZE * (HALF_WIDTHS.length + 1) + TABLE_COLUMNS
     this.target = tableTarget('Welkin.CloudShadows', width, SIZE)
     this.#cascades = HALF_WIDTHS.map((_, i) => ({
-      nodes: cascadeNodes(),
+      nodes: {
+        u: vector4(),
+        v: vector4(),
+        w: vector4(),
+        isDrawn: number(),
+        isCast: number(),
+        isShort: number(),
+        atlasTile: number()
+      },
       isDrawn: false,
       state: new CascadeState(i, field.rotations)
     }))
@@ -297,7 +303,11 @@ export class CloudShadowMap {
 
   /** Sets the uniforms of look-ups, for the camera and the clouds where they are now. */
   #updateNodes(): void {
-    const top = this.field.radius.value + shadowTop(this.field.layers)
+    const { layers, radius } = this.field
+    const tops = [...layers].map(({ parameters: { shadow, coverage, topAltitude } }) =>
+      shadow && coverage > 0 ? topAltitude : 0
+    )
+    const top = Math.max(0, ...tops) + radius.value
     for (const { nodes, isDrawn, state } of this.#cascades) {
       nodes.isCast.value = isDrawn ? 1 : 0
       nodes.isDrawn.value = isDrawn && this.#isNear ? 1 : 0
