@@ -91,7 +91,7 @@ function rainInTheEast(
   u.value.set(0, 0, 0, 0.5)
   v.value.set(0, 0, 0, 0.5)
   w.value.set(0, 0, 0, 0)
-  const cascade = { u, v, w, isDrawn: number(), isCast: number(), isShort: number(), atlasTile: number() }
+  const cascade = { u, v, w, isDrawn: number(), isCast: number(), atlasTile: number() }
   const shadows: CloudShadows = {
     map: texture(dark) as unknown as LevelTexture<Vec2>,
     cascades: [cascade],

@@ -1,6 +1,6 @@
 import type { Quaternion } from 'three'
 import { Vector3 } from 'three'
-import { CASCADE_RATIO, MAXIMUM_DISTANCE } from './tsl/shadowRay'
+import { CASCADE_RATIO } from './tsl/shadowRay'
 
 /** Texels along an edge of a cascade. */
 export const CASCADE_SIZE = 256
@@ -80,14 +80,6 @@ export class CascadeState {
   /** Width of a texel [m]. */
   get texel(): number {
     return (2 * this.halfWidth) / CASCADE_SIZE
-  }
-
-  /** Distance from the planet's centre that all rays of light reach; 0 under low light, for which the plane is tilted [m]. */
-  get reach(): number {
-    const { light, anchor, halfWidth } = this
-    const radius = anchor.length()
-    const slope = light.dot(anchor) / radius
-    return slope < LEAST_SLOPE ? 0 : radius + slope * MAXIMUM_DISTANCE * halfWidth
   }
 
   /**

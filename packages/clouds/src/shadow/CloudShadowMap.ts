@@ -121,7 +121,6 @@ export class CloudShadowMap {
         w: vector4(),
         isDrawn: number(),
         isCast: number(),
-        isShort: number(),
         atlasTile: number()
       },
       isDrawn: false,
@@ -303,16 +302,10 @@ export class CloudShadowMap {
 
   /** Sets the uniforms of look-ups, for the camera and the clouds where they are now. */
   #updateNodes(): void {
-    const { layers, radius } = this.field
-    const tops = [...layers].map(({ parameters: { shadow, coverage, topAltitude } }) =>
-      shadow && coverage > 0 ? topAltitude : 0
-    )
-    const top = Math.max(0, ...tops) + radius.value
     for (const { nodes, isDrawn, state } of this.#cascades) {
       nodes.isCast.value = isDrawn ? 1 : 0
       nodes.isDrawn.value = isDrawn && this.#isNear ? 1 : 0
       if (!isDrawn) continue
-      nodes.isShort.value = state.reach < top ? 1 : 0
       const { atlasTile, halfWidth, anchor, across, measure, normal, center } = state
       nodes.atlasTile.value = atlasTile
       _offset.copy(this.camera).sub(anchor).sub(this.#driftOf(state, _drift))

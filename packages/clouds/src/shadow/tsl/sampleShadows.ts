@@ -12,8 +12,6 @@ export interface CascadeNodes {
   /** 1 once it is drawn for clouds and surfaces, and once it is for the air. */
   readonly isDrawn: UniformNode<'float', number>
   readonly isCast: UniformNode<'float', number>
-  /** 1 if its rays of light end below tops of clouds, so that wider cascades have what is beyond. */
-  readonly isShort: UniformNode<'float', number>
   /** Index of its tile in the map. */
   readonly atlasTile: UniformNode<'float', number>
 }
@@ -103,9 +101,18 @@ export function sampleShadows(
 const shareAbove = ({ x: front, y: half, z: depth }: Vec4, height: Float): Float =>
   front.sub(depth.mul(height)).div(half.mul(2).max(1e-6)).clamp().toConst()
 
+/** Optical depths at a place: texture coordinates (xy), height over the cascade's plane (z), and weight of the map there (w). */
+function depthsAt(map: CloudShadows['map'], inAtlas: Vec4): LightDepths {
+  const inMap = inAtlas.w.toConst() as Float
+  const texel = map.sample(inAtlas.xy).level(0).mul(inMap).toConst() as Vec4
+  const share = shareAbove(texel, inAtlas.z)
+  const toLight = texel.z.mul(share).toConst() as Float
+  return { toLight, through: texel.z, shadow: texel.w.mul(share).toConst(), inMap }
+}
+
 /**
- * Optical depths along a ray of layers that cast shadows: as {@link sampleShadows} has them, for less at each place, since
- * cascades are chosen by the stretch of the ray that is in them, and wider ones are read where rays of light are too short.
+ * Optical depths along a ray: as {@link sampleShadows} has them, for less at each place, since cascades are
+ * chosen by the stretch of the ray that is in them.
  *
  * @param from - Start of the ray, from the camera of the map [m].
  * @param direction - Unit length.
@@ -117,10 +124,10 @@ export function sampleShadowsAlong(
   from: Vec3,
   direction: Vec3,
   dither: Float
-): (distance: Float) => Pick<LightDepths, 'shadow' | 'inMap'> {
+): (distance: Float) => LightDepths {
   const edge = dither.mul(-FADE).add(0.5 - MARGIN)
   const extent = vec3(edge, edge, edge.mul(2 * MAXIMUM_DISTANCE)).toConst() as Vec3
-  const stretches = cascades.map(({ u, v, w, isCast, isShort, atlasTile }) => {
+  const stretches = cascades.map(({ u, v, w, isCast, atlasTile }) => {
     const along = (inAtlas: Vec3): Vec3 =>
       vec3(inAtlas.dot(u.xyz), inAtlas.dot(v.xyz), inAtlas.dot(w.xyz))
     const start = along(from)
@@ -141,27 +148,17 @@ export function sampleShadowsAlong(
       slope: slope.mul(toAtlas).toConst(),
       first: first.x.max(first.y).max(first.z).toConst(),
       // Cascades that are not drawn end at the camera.
-      last: last.x.min(last.y).min(last.z).mul(isCast).toConst(),
-      isShort
+      last: last.x.min(last.y).min(last.z).mul(isCast).toConst()
     }
   })
   return distance => {
-    const shadow = float(0).toVar()
-    const inMap = float(0).toVar()
-    /** 1 until the ray of light has passed all clouds. */
-    const goesOn = float(1).toVar()
-    // From the narrowest to the widest: the first that fits has the place, others what is beyond its rays.
-    for (const { start, slope, first, last, isShort } of stretches) {
-      const isInside = distance.greaterThan(first).and(distance.lessThan(last))
-      If(goesOn.greaterThan(0).and(isInside), () => {
-        const inAtlas = start.add(slope.mul(distance)).toConst() as Vec3
-        const texel = map.sample(inAtlas.xy).level(0).toConst() as Vec4
-        const height = inMap.greaterThan(0).select(NARROWER_END, inAtlas.z) as Float
-        shadow.addAssign(texel.w.mul(shareAbove(texel, height)))
-        inMap.assign(1)
-        goesOn.assign(isShort)
+    const inAtlas = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
+    // From the widest to the narrowest: the last that fits stays.
+    for (const { start, slope, first, last } of stretches.toReversed()) {
+      If(distance.greaterThan(first).and(distance.lessThan(last)), () => {
+        inAtlas.assign(vec4(start.add(slope.mul(distance)), 1))
       })
     }
-    return { shadow, inMap }
+    return depthsAt(map, inAtlas)
   }
 }
