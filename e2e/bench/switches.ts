@@ -112,7 +112,12 @@ export async function measureSwitches(
   renderer.shadowMap.enabled = true
   renderer.library.addToneMapping(photographicToneMapping(), CustomToneMapping)
   renderer.toneMapping = CustomToneMapping
-  const base: ValleyState = { ...openingState, quality: STILL_QUALITY, paused: true }
+  const base: ValleyState = {
+    ...openingState,
+    antialiasing: 'none',
+    quality: STILL_QUALITY,
+    paused: true
+  }
   const valley = new Valley(renderer, base)
   await valley.bake(renderer)
   valley.camera.aspect = size[0] / size[1]

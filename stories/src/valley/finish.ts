@@ -97,7 +97,7 @@ export class ValleyFinish {
     const shown = this.#keep(new ToneTable()).shown(this.#local?.shown(picture) ?? picture)
     const smooth = { fxaa, smaa }[antialiasing as string]
     this.#pipeline.outputNode =
-      smooth === undefined ? shown : this.#keep(smooth(this.#texture(shown, 'Shown')))
+      smooth === undefined ? shown : this.#keep(smooth(this.#drawn(shown, 'Shown')))
     this.#pipeline.needsUpdate = true
   }
 
