@@ -8,7 +8,7 @@ import type { Node, RenderPipeline } from 'three/webgpu'
  * @returns What it draws with, to be freed.
  */
 export function smoothEdges(pipeline: RenderPipeline, picture: Node): { dispose(): void } {
-  const shown = rtt(renderOutput(picture) as never, null, null, { depthBuffer: false })
+  const shown = rtt(renderOutput(picture), null, null, { depthBuffer: false })
   pipeline.outputColorTransform = false
   pipeline.outputNode = fxaa(shown)
   pipeline.needsUpdate = true
