@@ -59,6 +59,7 @@ const SWITCHES: readonly Switch[] = [
   { name: 'bloom', least: 0.01 },
   { name: 'depthOfField', least: 0.01 },
   { name: 'motionBlur', isTurning: true, least: 0.01 },
+  { name: 'antialiasing', value: 'edges', least: 0.005 },
   { name: 'antialiasing', value: 'fxaa', least: 0.005 },
   // SMAA asks for a browser's `Image`.
   { name: 'antialiasing', value: 'traa', least: 0.005 },

@@ -60,7 +60,7 @@ interface Row extends Conditions {
 const ROWS: readonly Row[] = [
   { name: 'fair, as the story opens, without bloom', changes: { bloom: false } },
   { name: 'fair', changes: FULL },
-  { name: 'fair, FXAA', changes: { ...FULL, antialiasing: 'fxaa' } },
+  { name: 'fair, smooth edges', changes: { ...FULL, antialiasing: 'edges' } },
   { name: 'fair, turning to and fro', changes: FULL, turn: 'fro' },
   { name: 'fair, turning on', changes: FULL, turn: 'on' },
   { name: 'broken', changes: { ...FULL, weather: 'broken' } },

@@ -51,8 +51,8 @@ import { castLandShadow, LIGHT_DISTANCE } from '../../stories/src/shafts/landSha
 import { Ridge } from '../../stories/src/shafts/Ridge'
 import type { Still } from './Still'
 import { meadow, redDust, snow } from '../../stories/src/hills/soil'
+import { finish } from './finish'
 import { readPicture } from './readPicture'
-import { smoothEdges } from './smoothEdges'
 
 /** Vertical field of view by default [°]. */
 const FIELD_OF_VIEW = 55
@@ -136,8 +136,8 @@ export class StillView {
   readonly #clouds: CloudsNode | undefined
   readonly #lightning: Lightning | undefined
   readonly #exposure: AutoExposureNode
-  /** Texture that edges are smoothed in. */
-  readonly #smooth: { dispose(): void }
+  /** Picture whose edges are smoothed. */
+  readonly #shown: { dispose(): void }
 
   constructor(
     renderer: WebGPURenderer,
@@ -222,7 +222,7 @@ export class StillView {
     }
     this.#exposure = autoExposure(picture, atmosphere, { compensation: still.compensation })
     this.#pipeline = new RenderPipeline(renderer)
-    this.#smooth = smoothEdges(this.#pipeline, this.#exposure)
+    this.#shown = finish(this.#pipeline, this.#exposure)
   }
 
   /** Luminance that it is exposed for [cd/m²]. */
@@ -248,7 +248,7 @@ export class StillView {
 
   dispose(): void {
     this.#pipeline.dispose()
-    this.#smooth.dispose()
+    this.#shown.dispose()
     this.#exposure.dispose()
     this.#lightning?.dispose()
     this.#clouds?.dispose()

@@ -2,8 +2,8 @@ import { RenderTarget } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { Street } from '../../stories/src/street/Street'
 import type { StreetStill } from './streets'
+import { finish } from './finish'
 import { readPicture } from './readPicture'
-import { smoothEdges } from './smoothEdges'
 
 /** Time of fall [s]. */
 const TIME = 60
@@ -13,8 +13,8 @@ export class StreetView {
   readonly #renderer: WebGPURenderer
   readonly #target: RenderTarget
   readonly #street: Street
-  /** Texture that edges are smoothed in. */
-  readonly #smooth: { dispose(): void }
+  /** Picture whose edges are smoothed. */
+  readonly #shown: { dispose(): void }
 
   constructor(
     renderer: WebGPURenderer,
@@ -25,7 +25,7 @@ export class StreetView {
     this.#target = new RenderTarget(width, height)
     this.#street = new Street(renderer, TIME)
     this.#street.set(street)
-    this.#smooth = smoothEdges(this.#street.pipeline, this.#street.exposure)
+    this.#shown = finish(this.#street.pipeline, this.#street.exposure)
     this.#street.camera.aspect = width / height
     this.#street.camera.updateProjectionMatrix()
   }
@@ -58,7 +58,7 @@ export class StreetView {
 
   dispose(): void {
     this.#street.dispose()
-    this.#smooth.dispose()
+    this.#shown.dispose()
     this.#target.dispose()
   }
 }
