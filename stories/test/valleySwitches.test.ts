@@ -69,6 +69,7 @@ it.each(['trees', 'village', 'water'] as const)('%s go and come', name => {
 })
 
 it.each([
+  ['edges', 'SmoothEdgesNode'],
   ['fxaa', 'FXAANode'],
   ['smaa', 'SMAANode'],
   ['traa', 'TRAANode'],
@@ -76,7 +77,7 @@ it.each([
 ] as const)('edges are smoothed by %s alone', (antialiasing, type) => {
   vi.stubGlobal('Image', EventTarget) // SMAA loads its tables as pictures
   valley.set({ ...openingState, quality: 'low', antialiasing })
-  const all = ['FXAANode', 'SMAANode', 'TRAANode', 'TAAUNode']
+  const all = ['SmoothEdgesNode', 'FXAANode', 'SMAANode', 'TRAANode', 'TAAUNode']
   expect(all.filter(each => nodeTypes().has(each))).toEqual([type])
   valley.set({ antialiasing: 'none' })
   expect(all.filter(each => nodeTypes().has(each))).toEqual([])

@@ -1,7 +1,7 @@
 import { DataTexture, DataUtils, HalfFloatType, LinearFilter } from 'three'
 import { texture } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
-import { smoothEdges } from '../../../stories/src/valley/smoothEdges'
+import { smoothEdges } from '../../../stories/src/valley/SmoothEdgesNode'
 import { drawToFloat } from '../harness/atmosphere'
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'

@@ -15,7 +15,7 @@ import { lensOn } from './lens'
 import { LocalExposure } from './LocalExposure'
 import { PictureNode } from './PictureNode'
 import { shutter } from './shutter'
-import { smoothEdges } from './smoothEdges'
+import { smoothEdges } from './SmoothEdgesNode'
 import { stillVelocity } from './stillVelocity'
 import { ToneTable } from './ToneTable'
 

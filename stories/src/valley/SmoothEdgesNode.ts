@@ -12,7 +12,8 @@ import {
   vec2,
   vec3
 } from 'three/tsl'
-import type { Node, TextureNode } from 'three/webgpu'
+import { Node } from 'three/webgpu'
+import type { TextureNode } from 'three/webgpu'
 
 /** Contrast from which neighbours are an edge: absolute, and over the brighter, in the display's values. */
 const EDGE = [0.03, 0.06] as const
@@ -28,13 +29,31 @@ type Float = Node<'float'>
 type Vec2 = Node<'vec2'>
 type Vec4 = Node<'vec4'>
 
+/** Smooths stairs along edges: see {@link smoothEdges}. */
+export class SmoothEdgesNode extends Node<'vec4'> {
+  static get type(): string {
+    return 'SmoothEdgesNode'
+  }
+
+  /** @param picture - Colours of the display, filtered linearly. */
+  constructor(readonly picture: TextureNode) {
+    super('vec4')
+  }
+
+  override setup(): Node {
+    return smoothed(this.picture)
+  }
+}
+
 /**
  * Smooths stairs along edges: FXAA that leaves what is a pixel thin, such as stars and rain, as it is.
  *
  * @param picture - Colours of the display, filtered linearly.
  * @see Lottes 2009, "FXAA" (edge search)
  */
-export function smoothEdges(picture: TextureNode): Vec4 {
+export const smoothEdges = (picture: TextureNode): SmoothEdgesNode => new SmoothEdgesNode(picture)
+
+function smoothed(picture: TextureNode): Vec4 {
   const read = (place: Vec2): Vec4 => picture.sample(place).level(float(0)) as unknown as Vec4
   const lightAt = (place: Vec2): Float =>
     read(place)
@@ -68,8 +87,8 @@ export function smoothEdges(picture: TextureNode): Vec4 {
       const after = isRow.select(south, east).toConst()
       const isBefore = before.sub(middle).abs().greaterThan(after.sub(middle).abs()).toConst()
       const other = isBefore.select(before, after).toConst()
-      const step = isRow.select(vec2(0, texel.y), vec2(texel.x, 0))
-      const across = (step as Vec2).mul(isBefore.select(float(-1), 1)).toConst()
+      const step = vec2(isRow.select(vec2(0, texel.y), vec2(texel.x, 0)) as Vec2)
+      const across = isBefore.select(step.negate(), step).toConst() as Vec2
       const along = vec2(isRow.select(vec2(texel.x, 0), vec2(0, texel.y)) as Vec2).toConst()
       const edge = middle.add(other).mul(0.5).toConst()
       const end = other.sub(middle).abs().mul(0.25).toConst()
