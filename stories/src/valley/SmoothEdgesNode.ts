@@ -3,6 +3,7 @@ import {
   float,
   Fn,
   If,
+  int,
   Loop,
   max,
   min,
@@ -61,7 +62,7 @@ function smoothed(picture: TextureNode): Vec4 {
       .toConst()
   return Fn(() => {
     const here = uv().toConst()
-    const texel = vec2(textureSize(picture, 0) as unknown as Vec2)
+    const texel = vec2(textureSize(picture, int(0)) as unknown as Vec2)
       .reciprocal()
       .toConst()
     const beside = (x: number, y: number): Float => lightAt(here.add(texel.mul(vec2(x, y))))
