@@ -55,7 +55,7 @@ export class SmoothEdgesNode extends Node<'vec4'> {
 export const smoothEdges = (picture: TextureNode): SmoothEdgesNode => new SmoothEdgesNode(picture)
 
 function smoothed(picture: TextureNode): Vec4 {
-  const read = (place: Vec2): Vec4 => picture.sample(place).level(float(0)) as unknown as Vec4
+  const read = (place: Vec2): Vec4 => picture.sample(place).level(float(0))
   const lightAt = (place: Vec2): Float =>
     read(place)
       .rgb.dot(vec3(0.299, 0.587, 0.114))
@@ -122,5 +122,5 @@ function smoothed(picture: TextureNode): Vec4 {
       place.addAssign(across.mul(max(isOther.select(part, 0), isThin.select(0, corner))))
     })
     return read(place)
-  })() as unknown as Vec4
+  })()
 }
