@@ -59,6 +59,7 @@ const SWITCHES: readonly Switch[] = [
   { name: 'bloom', least: 0.01 },
   { name: 'depthOfField', least: 0.01 },
   { name: 'motionBlur', isTurning: true, least: 0.01 },
+  { name: 'antialiasing', value: 'edges', least: 0.005 },
   { name: 'antialiasing', value: 'fxaa', least: 0.005 },
   // SMAA asks for a browser's `Image`.
   { name: 'antialiasing', value: 'traa', least: 0.005 },
@@ -112,7 +113,12 @@ export async function measureSwitches(
   renderer.shadowMap.enabled = true
   renderer.library.addToneMapping(photographicToneMapping(), CustomToneMapping)
   renderer.toneMapping = CustomToneMapping
-  const base: ValleyState = { ...openingState, quality: STILL_QUALITY, paused: true }
+  const base: ValleyState = {
+    ...openingState,
+    antialiasing: 'none',
+    quality: STILL_QUALITY,
+    paused: true
+  }
   const valley = new Valley(renderer, base)
   await valley.bake(renderer)
   valley.camera.aspect = size[0] / size[1]

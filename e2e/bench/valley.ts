@@ -29,8 +29,13 @@ const DUSK = { hour: 19.8 } as const
 /** The sun is 4.5° down: the moon's shadows, lamps, stars and the light of dusk are on together. */
 const NIGHTFALL = { hour: 20.15 } as const
 
-/** Everything that is on before bloom, depth of field and TRAA. */
-const FULL = { occlusion: true, motionBlur: true, bloom: false } as const
+/** Everything that is on before bloom, depth of field and smoothed edges. */
+const FULL = {
+  occlusion: true,
+  motionBlur: true,
+  bloom: false,
+  antialiasing: 'none'
+} as const
 
 /** The full moon stands high. */
 const WINTER = { date: Date.UTC(2026, 11, 24), hour: 22 } as const
@@ -55,6 +60,7 @@ interface Row extends Conditions {
 const ROWS: readonly Row[] = [
   { name: 'fair, as the story opens, without bloom', changes: { bloom: false } },
   { name: 'fair', changes: FULL },
+  { name: 'fair, smooth edges', changes: { ...FULL, antialiasing: 'edges' } },
   { name: 'fair, turning to and fro', changes: FULL, turn: 'fro' },
   { name: 'fair, turning on', changes: FULL, turn: 'on' },
   { name: 'broken', changes: { ...FULL, weather: 'broken' } },

@@ -51,6 +51,7 @@ import { castLandShadow, LIGHT_DISTANCE } from '../../stories/src/shafts/landSha
 import { Ridge } from '../../stories/src/shafts/Ridge'
 import type { Still } from './Still'
 import { meadow, redDust, snow } from '../../stories/src/hills/soil'
+import { finish } from './finish'
 import { readPicture } from './readPicture'
 
 /** Vertical field of view by default [°]. */
@@ -122,7 +123,7 @@ function flashOf(
   return storm
 }
 
-/** A still's scene, drawn as an app would draw it: a pass, the air, the clouds. */
+/** A still's scene, drawn as an app would draw it: a pass, the air, the clouds, the finish. */
 export class StillView {
   readonly #renderer: WebGPURenderer
   readonly #target: RenderTarget
@@ -135,6 +136,8 @@ export class StillView {
   readonly #clouds: CloudsNode | undefined
   readonly #lightning: Lightning | undefined
   readonly #exposure: AutoExposureNode
+  /** Picture whose edges are smoothed. */
+  readonly #shown: { dispose(): void }
 
   constructor(
     renderer: WebGPURenderer,
@@ -219,7 +222,7 @@ export class StillView {
     }
     this.#exposure = autoExposure(picture, atmosphere, { compensation: still.compensation })
     this.#pipeline = new RenderPipeline(renderer)
-    this.#pipeline.outputNode = this.#exposure
+    this.#shown = finish(this.#pipeline, this.#exposure)
   }
 
   /** Luminance that it is exposed for [cd/m²]. */
@@ -245,6 +248,7 @@ export class StillView {
 
   dispose(): void {
     this.#pipeline.dispose()
+    this.#shown.dispose()
     this.#exposure.dispose()
     this.#lightning?.dispose()
     this.#clouds?.dispose()

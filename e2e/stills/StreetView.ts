@@ -2,6 +2,7 @@ import { RenderTarget } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { Street } from '../../stories/src/street/Street'
 import type { StreetStill } from './streets'
+import { finish } from './finish'
 import { readPicture } from './readPicture'
 
 /** Time of fall [s]. */
@@ -12,6 +13,8 @@ export class StreetView {
   readonly #renderer: WebGPURenderer
   readonly #target: RenderTarget
   readonly #street: Street
+  /** Picture whose edges are smoothed. */
+  readonly #shown: { dispose(): void }
 
   constructor(
     renderer: WebGPURenderer,
@@ -22,6 +25,7 @@ export class StreetView {
     this.#target = new RenderTarget(width, height)
     this.#street = new Street(renderer, TIME)
     this.#street.set(street)
+    this.#shown = finish(this.#street.pipeline, this.#street.exposure)
     this.#street.camera.aspect = width / height
     this.#street.camera.updateProjectionMatrix()
   }
@@ -54,6 +58,7 @@ export class StreetView {
 
   dispose(): void {
     this.#street.dispose()
+    this.#shown.dispose()
     this.#target.dispose()
   }
 }

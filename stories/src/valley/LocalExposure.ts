@@ -35,8 +35,8 @@ const LIKE = 1.2
 /** log2 of luminance that stays as it is: middle grey. */
 const KEY = Math.log2(0.17)
 
-/** Part of the stops between a place and middle grey that is taken away, and the most [stops]. */
-const STRENGTH = 0.38
+/** Parts of the stops between a place and middle grey that are taken away where it is darker and where it is brighter, and the most [stops]. Clouds and snow stay white. */
+const [DODGE, BURN] = [0.3, 0.15]
 const MOST = 1.25
 
 /** log2 of luminance that is told apart from black. */
@@ -60,7 +60,7 @@ export class LocalExposure {
   readonly #cells = tableTarget('LocalExposureCells', ...CELLS)
   readonly #grid = tableTarget('LocalExposure', TILES[0] * LEVELS, TILES[1])
   readonly #passes: readonly [FragmentPass, FragmentPass]
-  readonly #strength = uniform(STRENGTH)
+  readonly #strength = uniform(1)
   /** Stops of the next picture's luminance scale over that of the grid. */
   readonly #shift = uniform(0)
   #kept = 1
@@ -124,7 +124,7 @@ export class LocalExposure {
 
   /** Strength, in [0, 1]: 0 leaves pictures as they are. */
   set strength(value: number) {
-    this.#strength.value = STRENGTH * value
+    this.#strength.value = value
   }
 
   /** Takes the luminance scale of the next picture. */
@@ -168,7 +168,9 @@ export class LocalExposure {
       ).rg
     const found = mix(at(lower), at(lower.add(1)), level.sub(lower)).toConst()
     const base = found.x.div(found.y.max(1e-4)).add(this.#shift)
-    const stops = float(KEY).sub(base).mul(this.#strength).clamp(-MOST, MOST)
+    const under = float(KEY).sub(base).toConst()
+    const part = under.greaterThan(0).select(DODGE, BURN)
+    const stops = under.mul(part).mul(this.#strength).clamp(-MOST, MOST)
     const gain = found.y.greaterThan(1e-4).select(exp2(stops), 1)
     return vec4(color.rgb.mul(gain as unknown as Float), color.a)
   }

@@ -15,12 +15,14 @@ import { lensOn } from './lens'
 import { LocalExposure } from './LocalExposure'
 import { PictureNode } from './PictureNode'
 import { shutter } from './shutter'
+import { smoothEdges } from './SmoothEdgesNode'
 import { stillVelocity } from './stillVelocity'
 import { ToneTable } from './ToneTable'
 
 /** Ways to smooth edges. */
 export const ANTIALIASING = {
   none: { label: 'None' },
+  edges: { label: 'Along edges' },
   fxaa: { label: 'FXAA' },
   smaa: { label: 'SMAA' },
   traa: { label: 'TRAA (over frames)' },
@@ -95,9 +97,9 @@ export class ValleyFinish {
       : undefined
     const picture = this.#picture(effects)
     const shown = this.#keep(new ToneTable()).shown(this.#local?.shown(picture) ?? picture)
-    const smooth = { fxaa, smaa }[antialiasing as string]
+    const smooth = { edges: smoothEdges, fxaa, smaa }[antialiasing as string]
     this.#pipeline.outputNode =
-      smooth === undefined ? shown : this.#keep(smooth(this.#texture(shown, 'Shown')))
+      smooth === undefined ? shown : this.#keep(smooth(this.#drawn(shown, 'Shown')))
     this.#pipeline.needsUpdate = true
   }
 

@@ -27,7 +27,7 @@ export const openingState = {
   water: true,
   environment: true,
   autoExposure: true,
-  antialiasing: 'none' as const,
+  antialiasing: 'edges' as const,
   occlusion: false,
   localExposure: true,
   reflections: true,

@@ -48,6 +48,7 @@ export type LastPass = Pick<ValleyEffects, 'antialiasing' | 'bloom' | 'motionBlu
 
 /** Name of what the last pass draws, to the canvas. */
 export function lastFeature({ antialiasing, bloom, motionBlur }: LastPass): string {
+  if (antialiasing === 'edges') return 'smooth edges'
   if (antialiasing === 'fxaa') return 'FXAA'
   if (antialiasing === 'smaa') return 'SMAA'
   return motionBlur && !bloom ? 'motion blur and tone mapping' : 'tone mapping'

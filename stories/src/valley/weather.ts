@@ -65,7 +65,7 @@ export const weathers = {
   },
   snow: {
     cumulus: 0,
-    deck: 0.95,
+    deck: 0.75,
     cirrus: 0,
     turbidity: 3,
     mist: 0,

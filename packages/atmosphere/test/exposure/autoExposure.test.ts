@@ -28,7 +28,8 @@ const settings = {
 const evenly = (luminance: number): MeteredLuminance => ({
   mean: luminance,
   light: luminance,
-  bright: luminance
+  bright: luminance,
+  seen: 1
 })
 
 /** Samples of which parts, from the first on, have values. */
@@ -84,6 +85,16 @@ describe('metered luminance', () => {
     expect(mean(new Float64Array(COUNT).fill(NaN))).toBe(meterForm.darkest)
   })
 
+  it('knows what part of the picture is seen', () => {
+    const seen = (...parts: readonly [part: number, log: number][]): number =>
+      meteredLogLuminance(samples(...parts), even, [0.1, 0.97]).seen
+    expect(seen([1, 3])).toBe(1)
+    expect(seen([0.25, -24], [0.75, 2])).toBeCloseTo(0.75, 9)
+    expect(seen([0.25, -10], [0.75, 2])).toBeCloseTo(0.75, 9)
+    expect(seen([0.25, -8], [0.75, 2])).toBeCloseTo(0.875, 9)
+    expect(seen([1, -24])).toBe(1)
+  })
+
   it('gives no more weight to the sun than to any pixel', () => {
     const logs = new Float64Array(COUNT).fill(0)
     logs.fill(Infinity, 0, COUNT / 100)
@@ -137,23 +148,44 @@ describe('exposed scale', () => {
     const limited = { ...settings, limits: [1, 100] } as const
     expect(exposedScale(evenly(1e-3), limited)).toBe(exposedScale(evenly(1), limited))
     expect(exposedScale(evenly(1e6), limited)).toBe(exposedScale(evenly(100), limited))
-    expect(1e5 * exposedScale({ mean: 10, light: 10, bright: 1e5 }, settings)).toBeCloseTo(8, 9)
+    expect(1e5 * exposedScale({ ...evenly(10), bright: 1e5 }, settings)).toBeCloseTo(8, 9)
   })
 
   it('gives way to a bright tenth by the part of its stops over 0.8 that it is told', () => {
-    const land = { mean: 1, light: 16, bright: 20 }
+    const land = { mean: 1, light: 16, bright: 20, seen: 1 }
     const shown = (highlightPriority: number): number =>
       exposedScale(land, { ...settings, highlightPriority })
     expect(shown(0)).toBeCloseTo(0.17, 9)
     expect(16 * shown(1)).toBeCloseTo(0.8, 9)
     expect(shown(0.5) ** 2).toBeCloseTo(shown(0) * shown(1), 9)
     // What is not over it changes nothing.
-    const mild = { mean: 1, light: 4.7, bright: 5 }
+    const mild = { mean: 1, light: 4.7, bright: 5, seen: 1 }
     expect(exposedScale(mild, settings)).toBeCloseTo(0.17, 9)
     const logs = samples([0.85, -3], [0.15, 1])
     expect(meteredLogLuminance(logs, even, [0.1, 0.97])).toMatchObject({ light: 1, bright: 1 })
     const few = samples([0.95, -3], [0.05, 1])
     expect(meteredLogLuminance(few, even, [0.1, 0.97])).toMatchObject({ light: -3, bright: 1 })
+  })
+
+  it('shows what is beside black brighter: its brightest tenth at 0.8 at most, by night as much less as all', () => {
+    const planet = { mean: 1, light: 1.5, bright: 2, seen: 0.7 }
+    const shown = (changes: Partial<MeteredLuminance>, darkNights = false): number =>
+      exposedScale({ ...planet, ...changes }, { ...settings, darkNights })
+    // The mean on a display stays: 0.7 of the picture at 0.17 / 0.7 ** 2.2.
+    expect(0.7 * shown({}) ** (1 / 2.2)).toBeCloseTo(0.17 ** (1 / 2.2), 9)
+    expect(1.5 * shown({ seen: 0.01 })).toBeCloseTo(0.8, 9)
+    // A sun beside space is no reason for more.
+    expect(shown({ light: 8, seen: 0.5 })).toBeCloseTo(shown({ light: 8, seen: 1 }), 9)
+    const moonlit = { mean: 1e-3, light: 2e-3, bright: 3e-3 }
+    const night = (seen: number): number => shown({ ...moonlit, seen }, true)
+    expect(night(0.01) / night(1)).toBeCloseTo(0.8 / 0.17 / 2, 9)
+    fc.assert(
+      fc.property(number(0.01, 1), number(0.01, 1), number(1, 50), (one, other, light) => {
+        const [less, more] = [Math.min(one, other), Math.max(one, other)]
+        expect(shown({ light, seen: less })).toBeGreaterThanOrEqual(shown({ light, seen: more }))
+      }),
+      runs
+    )
   })
 
   it('takes 63 % of the stops in its time, however that is cut into steps', () => {

@@ -15,6 +15,9 @@ const HIGHLIGHT = 8
 /** Luminance that a tenth of the picture may exceed [–]: shown as 0.85 of white in sRGB by `photographicToneMapping`. */
 const LIGHT = 0.8
 
+/** Exponent that stands for the display's transfer function. */
+const DISPLAY_GAMMA = 2.2
+
 /** Settings of an automatic exposure that need no picture. */
 export interface ExposureSettings {
   /** Brightness over what is metered [EV]. */
@@ -35,6 +38,8 @@ export interface MeteredLuminance {
   light: number
   /** Upper percentile. */
   bright: number
+  /** Part of the picture that is not black, or as good as black beside the rest, in (0, 1] [–]. */
+  seen: number
 }
 
 /**
@@ -48,6 +53,9 @@ const pictureLuminance = (luminance: number): number =>
 
 /**
  * Scale by which a metered luminance shows as middle grey, or darker by night.
+ *
+ * Beside black, such as space, what is seen is brighter: the mean of the whole picture on a display stays, up to where the
+ * brightest tenth is at {@link LIGHT}. So a planet before space has white clouds.
  *
  * @param metered - Luminances, each > 0.
  * @returns `luminanceScale`, > 0 [1/(cd/m²)].
@@ -63,7 +71,11 @@ export function exposedScale(
   const key = darkNights ? pictureLuminance(luminance) : MIDDLE_GREY
   const even = key / luminance
   const excess = Math.max((light * even) / LIGHT, 1)
-  return 2 ** compensation * Math.min(even * excess ** -highlightPriority, HIGHLIGHT / bright)
+  // The room is that of day: nights stay night.
+  const room = (LIGHT / MIDDLE_GREY) * (luminance / light)
+  const besideBlack = Math.max(Math.min(metered.seen ** -DISPLAY_GAMMA, room), 1)
+  const scale = even * besideBlack * excess ** -highlightPriority
+  return 2 ** compensation * Math.min(scale, HIGHLIGHT / bright)
 }
 
 /**

@@ -45,17 +45,22 @@ interface Histogram {
   weights: Float64Array
   /** Weight times log2 luminance of each bin, so that means are exact. */
   sums: Float64Array
+  /** Weight of all bins. */
   total: number
+  /** Weight of the picture, black and all. */
+  whole: number
 }
 
 function histogramOf(logs: ArrayLike<number>, weights: ArrayLike<number>): Histogram {
   const bins = (meterForm.brightest - meterForm.darkest) * BINS_PER_STOP + 1
-  const histogram = { weights: new Float64Array(bins), sums: new Float64Array(bins), total: 0 }
+  const [counts, products] = [new Float64Array(bins), new Float64Array(bins)]
+  const histogram = { weights: counts, sums: products, total: 0, whole: 0 }
   for (let i = 0; i < logs.length; i++) {
     const log = Math.min(logs[i], meterForm.brightest)
+    const weight = weights[i >> 2]
+    histogram.whole += weight
     if (!(log > meterForm.darkest)) continue
     const bin = Math.floor((log - meterForm.darkest) * BINS_PER_STOP)
-    const weight = weights[i >> 2]
     histogram.weights[bin] += weight
     histogram.sums[bin] += weight * log
     histogram.total += weight
@@ -84,7 +89,7 @@ function percentile({ weights, sums, total }: Histogram, part: number): number {
  *   number, is black and does not count.
  * @param weights - Weight of each cell.
  * @returns Mean, what a tenth of the picture exceeds, and the upper percentile, in the samples' unit;
- *   {@link meterForm.darkest} if all is black.
+ *   {@link meterForm.darkest} if all is black. The seen part is 1 then.
  */
 export function meteredLogLuminance(
   logs: ArrayLike<number>,
@@ -93,10 +98,10 @@ export function meteredLogLuminance(
 ): MeteredLuminance {
   const histogram = histogramOf(logs, weights)
   const { darkest } = meterForm
-  if (histogram.total === 0) return { mean: darkest, light: darkest, bright: darkest }
+  if (histogram.total === 0) return { mean: darkest, light: darkest, bright: darkest, seen: 1 }
   const [low, high] = percentiles.map(part => part * histogram.total)
   const bright = percentile(histogram, percentiles[1])
-  let [below, sum, total] = [0, 0, 0]
+  let [below, sum, total, visible] = [0, 0, 0, 0]
   histogram.weights.forEach((weight, bin) => {
     if (weight === 0) return
     const inside = Math.max(Math.min(below + weight, high) - Math.max(below, low), 0)
@@ -105,7 +110,9 @@ export function meteredLogLuminance(
     const seen = Math.min(Math.max((FADE[1] - (bright - log)) / (FADE[1] - FADE[0]), 0), 1)
     sum += inside * seen * log
     total += inside * seen
+    visible += weight * seen
   })
   const light = percentile(histogram, 1 - LIGHT_PART)
-  return { mean: total > 0 ? sum / total : bright, light, bright }
+  const mean = total > 0 ? sum / total : bright
+  return { mean, light, bright, seen: visible / histogram.whole }
 }
