@@ -128,7 +128,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       wind: { east: 9, north: 4 }
     }
   ],
-  overcast: [{ ...deck, coverage: 0.98, density: 0.025, baseRelief: 0.5, edgeSoftness: 0.2 }],
+  overcast: [{ ...deck, density: 0.025, baseRelief: 0.5, edgeSoftness: 0.2 }],
   cumulonimbus: [{ ...storm, precipitation: { rate: 0, ...hail } }, smallCumulus],
   altocumulus: [altocumulus],
   cirrus: [cirrus],

@@ -72,7 +72,7 @@ describe('CloudLayers', () => {
     layers.copy(cloudPreset('overcast'))
     expect(layers.at(0)).toBe(first)
     expect(first.parameters).toEqual(cloudPreset('overcast').at(0).parameters)
-    expect([...layers].map(({ parameters }) => parameters.coverage)).toEqual([0.98, 0, 0, 0])
+    expect([...layers].map(({ parameters }) => parameters.coverage)).toEqual([1, 0, 0, 0])
     layers.copy(cloudPreset('cumulonimbus'))
     expect(layers.at(1).parameters).toEqual(cloudPreset('cumulonimbus').at(1).parameters)
     expect(() => cloudPreset('cirrus', 2).copy(cloudPreset('mixed'))).toThrow(
