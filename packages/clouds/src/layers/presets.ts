@@ -59,7 +59,7 @@ const smallCumulus: Partial<CloudLayerParameters> = {
   coverage: 0.25
 }
 
-/** A closed deck. */
+/** A closed deck, even from below. */
 const deck: Partial<CloudLayerParameters> = {
   baseAltitude: 600,
   topAltitude: 1500,
@@ -128,7 +128,7 @@ const presets: Readonly<Record<CloudPresetName, Layers>> = {
       wind: { east: 9, north: 4 }
     }
   ],
-  overcast: [deck],
+  overcast: [{ ...deck, density: 0.025, baseRelief: 0.5, edgeSoftness: 0.2 }],
   cumulonimbus: [{ ...storm, precipitation: { rate: 0, ...hail } }, smallCumulus],
   altocumulus: [altocumulus],
   cirrus: [cirrus],
@@ -175,7 +175,7 @@ export const cloudPresetNames = /*#__PURE__*/ Object.keys(presets) as readonly C
  * - `fairWeather`: scattered cumulus
  * - `congestus`: towering cumulus, up to 4 km
  * - `stratocumulus`: a deck with gaps
- * - `overcast`: a closed grey sky
+ * - `overcast`: a closed grey sky, with relief and brighter thin places
  * - `cumulonimbus`: storms up to 11 km, with tower and anvil, among small cumulus
  * - `altocumulus`: small regular cells at 4 km
  * - `cirrus`: thin, fibrous, high

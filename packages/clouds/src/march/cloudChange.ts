@@ -1,39 +1,30 @@
-import type { Vector4 } from 'three'
 import type { CloudField } from '../density/CloudField'
 import { LAYER_STRIDE, movedVectors } from '../layers/layerUniforms'
 
 const { first, count, last } = movedVectors
 
-/** Components of a layer's vector, but for those from the first on that camera and wind move. */
-const formOf = ({ x, y, z, w }: Vector4, slot: number): number[] =>
-  slot < first || slot >= first + count ? [x, y, z, w] : []
-
-/** Vectors of a layer before the last ones that camera and wind move. */
-const FORM_SLOTS = LAYER_STRIDE - last
-
-/** All that shapes and lights the clouds, as numbers to compare with the last frame's. */
-export function cloudInputs(
-  { values, night, ambient }: CloudField,
-  lightVersion: number
-): readonly number[] {
-  const { moonDirection, moonIrradiance, skyRadiance } = night
-  const light = [moonDirection, moonIrradiance, skyRadiance]
-  return [
-    ...values.flatMap((vector, i) => formOf(vector, i % LAYER_STRIDE)),
-    ...light.flatMap(({ value }) => value.toArray()),
-    ambient.value,
-    lightVersion
-  ]
-}
+/** True for vectors of a layer that camera and wind move. */
+const isMoved = (slot: number): boolean =>
+  (slot >= first && slot < first + count) || slot >= LAYER_STRIDE - last
 
 /** Form of the clouds, without what camera and wind move: of each layer, vectors one after the other. */
 export const cloudForms = ({ values }: CloudField): readonly number[] =>
-  values.flatMap((vector, i) =>
-    i % LAYER_STRIDE < FORM_SLOTS ? formOf(vector, i % LAYER_STRIDE) : []
-  )
+  values.flatMap((vector, i) => (isMoved(i % LAYER_STRIDE) ? [] : vector.toArray()))
 
 /** Numbers of a layer among `cloudForms`. */
-const LAYER_NUMBERS = 4 * (FORM_SLOTS - count)
+const LAYER_NUMBERS = 4 * (LAYER_STRIDE - count - last)
+
+/** All that shapes and lights the clouds, as numbers to compare with the last frame's. */
+export function cloudInputs(field: CloudField, lightVersion: number): readonly number[] {
+  const { moonDirection, moonIrradiance, skyRadiance } = field.night
+  const light = [moonDirection, moonIrradiance, skyRadiance]
+  return [
+    ...cloudForms(field),
+    ...light.flatMap(({ value }) => value.toArray()),
+    field.ambient.value,
+    lightVersion
+  ]
+}
 
 /** Difference of two vectors over the greatest component of either, in [0, 2]. */
 function relativeChange(a: readonly number[], b: readonly number[]): number {

@@ -6,18 +6,21 @@ import { cloudPreset, CloudLayers, clouds } from '../../src'
 import { FrameUniforms } from '../../src/march/FrameUniforms'
 
 /** Frames of layers that may be changed between them: whether they have history, and its tolerance. */
-function framesOf(layers: CloudLayers): () => { hasHistory: number; steadiness: number } {
+function framesOf(
+  layers: CloudLayers,
+  up = new Vector3(0, 0, 1),
+  frames = new FrameUniforms()
+): () => { hasHistory: number; steadiness: number } {
   const atmosphere = new Atmosphere()
   const camera = new PerspectiveCamera()
   // Clouds that need no noise are there at once.
   const extinction = () => float(0)
   const { field } = clouds(vec4(0), float(0), camera, atmosphere, layers, { extinction })
-  const frames = new FrameUniforms()
   const view = {
     atmosphere,
     camera,
     height: 2,
-    up: new Vector3(0, 0, 1),
+    up,
     lightDirection: new Vector3(0, 0, 1),
     viewToMapped: new Matrix3()
   } as unknown as AtmosphereView
@@ -75,4 +78,21 @@ test('layers that cover nothing may become anything', () => {
   next()
   layers.at(1).set({ baseAltitude: 9000, topAltitude: 10_000, density: 0.001 })
   expect(next()).toEqual({ hasHistory: 1, steadiness: 1 })
+})
+
+test('history is whole again as soon as the camera rests, but not after a change of the clouds', () => {
+  const layers = cloudPreset('fairWeather')
+  const up = new Vector3(0, 0, 1)
+  const frames = new FrameUniforms()
+  const next = framesOf(layers, up, frames)
+  for (let frame = 0; frame < 9; frame++) next()
+  const still = frames.maxSamples.value
+  up.set(1e-6, 0, 1).normalize()
+  next()
+  expect(frames.maxSamples.value).toBeLessThan(still / 9)
+  next()
+  expect(frames.maxSamples.value).toBe(still)
+  layers.at(0).set({ density: 0.0999 })
+  for (let frame = 0; frame < 9; frame++) next()
+  expect(frames.maxSamples.value).toBeLessThan(still / 9)
 })
