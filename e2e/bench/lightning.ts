@@ -7,7 +7,7 @@ import { median } from './statistics'
 /** Distance of the flash from the camera [m]. */
 const DISTANCE = 6000
 
-/** Times that frames without and with the flash are timed in turn, and frames before each: the clock of a GPU is another one after a second. */
+/** Times that frames without and with the flash are timed in turn, and frames before each: a GPU's clock drifts within a second. */
 const ROUNDS = 4
 const SETTLING = 4
 
@@ -16,7 +16,7 @@ export interface LightningCost {
   name: string
   /** Frame with clouds alone. */
   withoutMs: number
-  /** Time that lightning adds between flashes, and what a flash adds to that. */
+  /** Time that lightning adds between flashes, to within the clock's drift, and what a flash adds to that. */
   darkMs: number
   flashMs: number
   /** Passes of a frame without a flash, and with one. */
@@ -90,4 +90,4 @@ export const lightningLine = ({
   darkPasses,
   passes
 }: LightningCost): string =>
-  `lightning, ${name.padEnd(8)} dark ${darkMs.toFixed(3)} ms   flash ${flashMs.toFixed(3)} ms   (without ${withoutMs.toFixed(3)} ms; passes ${line(darkPasses)}; with a flash ${line(passes)})`
+  `lightning, ${name.padEnd(8)} dark ${darkMs.toFixed(3)} ms   a flash adds ${flashMs.toFixed(3)} ms   (without ${withoutMs.toFixed(3)} ms; passes ${line(darkPasses)}; with a flash ${line(passes)})`

@@ -49,7 +49,7 @@ const strengths: Partial<Record<keyof ValleyState, () => number>> = {
 
 it.each(Object.entries(strengths))('%s is switched on and off', (name, strength) => {
   const weather = ({ mist: 'mist', precipitation: 'storm' } as const)[name] ?? 'fair'
-  // A texture that the last pass smooths hides what it is made of.
+  // `nodeTypes` does not see past the texture that smooth edges read.
   const plain = { ...openingState, antialiasing: 'none' } as const
   valley.set({ ...plain, weather, quality: 'low', [name]: true }, true)
   const on = strength()

@@ -156,6 +156,6 @@ gpuTest(
     dispose()
     set.dispose()
   },
-  // The shadow maps' look-up is that of the waves, which WebGL draws, too.
+  // The shadow maps' look-up is that of a slit in a deck (`clouds/shafts`), which WebGL draws, too.
   { backends: ['webgpu'] }
 )

@@ -4,10 +4,7 @@ import type { GpuContext } from './context'
 export interface GpuTest {
   name: string
   body: (context: GpuContext) => Promise<void> | void
-  /**
-   * Backends that it runs on: both if it is about what differs between them, such as reading back, formats or depth, and else
-   * WebGPU alone, since pictures of the stories hold WebGL to what WebGPU draws.
-   */
+  /** Backends that it runs on; which they should be: see CONTRIBUTING.md, Tests. */
   backends: readonly Backend[]
   timeoutSeconds: number
   /**

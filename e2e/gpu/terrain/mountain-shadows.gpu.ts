@@ -154,6 +154,6 @@ gpuTest(
     expectTrue(meanOf(bright) > 0.95, 'lit places are lit')
     for (const owned of [node, mountains, terrain, set]) owned.dispose()
   },
-  // The same look-ups as in the air, which WebGL draws, too.
+  // The story *Mountain shadows* draws them on WebGL, too.
   { backends: ['webgpu'] }
 )

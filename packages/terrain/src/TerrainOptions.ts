@@ -75,7 +75,7 @@ export const DEFAULTS: Required<TerrainOptions> = {
 
 /** Options that are objects: a property that each has, and what it must be. */
 const OBJECTS = [
-  ['imagery', 'loader', 'ImageTiles, PageImages'],
+  ['imagery', 'makeLoader', 'ImageTiles, PageImages'],
   ['maps', 'layers', 'GroundMaps'],
   ['mask', 'materials', 'a GroundMask'],
   ['horizon', 'cull', 'a TerrainHorizon'],

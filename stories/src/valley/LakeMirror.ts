@@ -124,8 +124,8 @@ export class LakeMirror {
       const hit = vec3(0).toVar()
       const isHit = float(0).toVar()
       const before = float(0).toVar()
-      // Water beside a tree in front of it, where half-sized pixels are of both, begins behind the tree: that is no hit.
-      const isInFront = float(0).toVar()
+      // A hit needs a step in front of what is drawn: water beside a tree, where half-sized pixels are of both, begins behind it.
+      const wasInFront = float(0).toVar()
       const growth = (REACH[1] / REACH[0]) ** (1 / (STEPS - 1))
       const far = float(REACH[0]).toVar()
       Loop(STEPS, () => {
@@ -134,7 +134,7 @@ export class LakeMirror {
         const slack = max(place.z.mul(THICKNESS[0]), THICKNESS[1])
         const nearest = at(before).z.sub(slack)
         const isBehind = place.z.greaterThan(depth).toConst()
-        If(isBehind.and(isInFront.greaterThan(0)).and(depth.greaterThan(nearest)), () => {
+        If(isBehind.and(wasInFront.greaterThan(0)).and(depth.greaterThan(nearest)), () => {
           const [near, behind] = [before.toVar(), far.toVar()]
           Loop(HALVINGS, () => {
             const middle = near.add(behind).mul(0.5).toConst()
@@ -149,7 +149,7 @@ export class LakeMirror {
           isHit.assign(1)
           Break()
         })
-        isInFront.assign(isBehind.select(0, 1))
+        wasInFront.assign(isBehind.select(0, 1))
         before.assign(far)
         far.mulAssign(growth)
       })

@@ -111,7 +111,7 @@ function smoothed(picture: TextureNode): Vec4 {
       // On the side of the pixel's own light the edge stays where it is.
       const isOther = near.y.mul(middle.sub(edge)).lessThan(0)
       const part = float(0.5).sub(near.x.div(back.x.add(on.x)))
-      // Corners of steep stairs; what is brighter or darker than both sides is a star or a drop, not a corner.
+      // Corners of steep stairs.
       const around = north.add(south).add(west).add(east).mul(2).add(nw).add(ne).add(sw).add(se)
       const unlike = around.div(12).sub(middle).abs().div(contrast).min(1)
       const corner = smoothstep(0, 1, unlike).pow(2)
@@ -119,7 +119,8 @@ function smoothed(picture: TextureNode): Vec4 {
         .sub(middle)
         .mul(after.sub(middle))
         .greaterThan(contrast.mul(contrast).mul(THIN))
-      place.addAssign(across.mul(max(isOther.select(part, 0), isThin.select(0, corner))))
+      // What is brighter or darker than both sides is a star or a drop, not an edge.
+      place.addAssign(across.mul(isThin.select(0, max(isOther.select(part, 0), corner))))
     })
     return read(place)
   })()

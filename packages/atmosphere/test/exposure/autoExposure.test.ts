@@ -147,6 +147,9 @@ describe('exposed scale', () => {
   it('keeps to its limits, and the bright below white', () => {
     const limited = { ...settings, limits: [1, 100] } as const
     expect(exposedScale(evenly(1e-3), limited)).toBe(exposedScale(evenly(1), limited))
+    expect(exposedScale({ ...evenly(1e-3), seen: 0.1 }, limited)).toBe(
+      exposedScale(evenly(1), limited)
+    )
     expect(exposedScale(evenly(1e6), limited)).toBe(exposedScale(evenly(100), limited))
     expect(1e5 * exposedScale({ ...evenly(10), bright: 1e5 }, settings)).toBeCloseTo(8, 9)
   })
@@ -167,7 +170,7 @@ describe('exposed scale', () => {
     expect(meteredLogLuminance(few, even, [0.1, 0.97])).toMatchObject({ light: -3, bright: 1 })
   })
 
-  it('shows what is beside black brighter: its brightest tenth at 0.8 at most, by night as much less as all', () => {
+  it('shows what is beside black brighter: its brightest tenth at 0.8 at most, and nights stay night', () => {
     const planet = { mean: 1, light: 1.5, bright: 2, seen: 0.7 }
     const shown = (changes: Partial<MeteredLuminance>, darkNights = false): number =>
       exposedScale({ ...planet, ...changes }, { ...settings, darkNights })

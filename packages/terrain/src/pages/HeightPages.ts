@@ -52,7 +52,7 @@ export class HeightPages {
     this.#source = source
     this.atlas = new PageAtlas(options)
     this.#baker = new PageBaker(source, figure, this.atlas, options)
-    this.#images = imagery?.loader(tile => this.#baker.request(tile), onChange) ?? null
+    this.#images = imagery?.makeLoader(tile => this.#baker.request(tile), onChange) ?? null
     this.#owners = Array.from({ length: this.atlas.capacity }, () => null)
   }
 

@@ -18,8 +18,8 @@ export abstract class PageImages implements LoadedImages {
    */
   abstract loadImage(request: PageRequest, signal: AbortSignal): Promise<void>
 
-  /** Loader of pictures for a terrain's pages. */
-  loader(requestOf: (tile: Tile) => PageRequest, onChange: () => void): ImageLoader {
+  /** Makes the loader of pictures for a terrain's pages. @internal */
+  makeLoader(requestOf: (tile: Tile) => PageRequest, onChange: () => void): ImageLoader {
     return new ImageLoader(this, requestOf, onChange)
   }
 }

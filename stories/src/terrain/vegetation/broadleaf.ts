@@ -115,7 +115,7 @@ export function broadleaf(kind: keyof typeof SHAPES): BufferGeometry {
         .multiplyScalar(1.9)
         .add(outwards)
       spray.lookAt(facing.normalize())
-      // Any order along the bough will do that has nothing to do with the direction.
+      // Shuffled, so that a spray's place along the bough does not follow its direction.
       const along = MathUtils.lerp(...LEAFY, Math.sqrt((((5 * j) % sprays) + random()) / sprays))
       const about = foot.clone().lerp(tip, along)
       const place = outwards.clone().multiplyScalar(0.6 * size)

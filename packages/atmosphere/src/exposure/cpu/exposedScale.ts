@@ -34,7 +34,7 @@ export interface ExposureSettings {
 export interface MeteredLuminance {
   /** Mean, in logarithms. */
   mean: number
-  /** Exceeded by a tenth of the picture. */
+  /** Exceeded by a tenth of what is not black. */
   light: number
   /** Upper percentile. */
   bright: number
@@ -68,13 +68,15 @@ export function exposedScale(
   const [luminance, light, bright] = [metered.mean, metered.light, metered.bright].map(value =>
     Math.min(Math.max(value, least), greatest)
   )
-  const key = darkNights ? pictureLuminance(luminance) : MIDDLE_GREY
-  const even = key / luminance
+  /** Scale of an even picture. */
+  const evenScale = (of: number): number => (darkNights ? pictureLuminance(of) : MIDDLE_GREY) / of
+  const even = evenScale(luminance)
   const excess = Math.max((light * even) / LIGHT, 1)
   // The room is that of day: nights stay night.
   const room = (LIGHT / MIDDLE_GREY) * (luminance / light)
   const besideBlack = Math.max(Math.min(metered.seen ** -DISPLAY_GAMMA, room), 1)
-  const scale = even * besideBlack * excess ** -highlightPriority
+  const brighter = Math.min(even * besideBlack, evenScale(least))
+  const scale = brighter * excess ** -highlightPriority
   return 2 ** compensation * Math.min(scale, HIGHLIGHT / bright)
 }
 

@@ -88,8 +88,8 @@ function percentile({ weights, sums, total }: Histogram, part: number): number {
  * @param logs - Four samples a cell, row by row: log2 of luminance in any unit. {@link meterForm.darkest} and less, or not a
  *   number, is black and does not count.
  * @param weights - Weight of each cell.
- * @returns Mean, what a tenth of the picture exceeds, and the upper percentile, in the samples' unit;
- *   {@link meterForm.darkest} if all is black. The seen part is 1 then.
+ * @returns Mean, what a tenth exceeds of what is not black, and the upper percentile, in the samples' unit, and the part that is
+ *   seen; {@link meterForm.darkest} and 1 if all is black.
  */
 export function meteredLogLuminance(
   logs: ArrayLike<number>,
@@ -101,18 +101,18 @@ export function meteredLogLuminance(
   if (histogram.total === 0) return { mean: darkest, light: darkest, bright: darkest, seen: 1 }
   const [low, high] = percentiles.map(part => part * histogram.total)
   const bright = percentile(histogram, percentiles[1])
-  let [below, sum, total, visible] = [0, 0, 0, 0]
+  let [below, sum, total, seen] = [0, 0, 0, 0]
   histogram.weights.forEach((weight, bin) => {
     if (weight === 0) return
     const inside = Math.max(Math.min(below + weight, high) - Math.max(below, low), 0)
     below += weight
     const log = histogram.sums[bin] / weight
-    const seen = Math.min(Math.max((FADE[1] - (bright - log)) / (FADE[1] - FADE[0]), 0), 1)
-    sum += inside * seen * log
-    total += inside * seen
-    visible += weight * seen
+    const visibility = Math.min(Math.max((FADE[1] - (bright - log)) / (FADE[1] - FADE[0]), 0), 1)
+    sum += inside * visibility * log
+    total += inside * visibility
+    seen += weight * visibility
   })
   const light = percentile(histogram, 1 - LIGHT_PART)
   const mean = total > 0 ? sum / total : bright
-  return { mean, light, bright, seen: visible / histogram.whole }
+  return { mean, light, bright, seen: seen / histogram.whole }
 }
