@@ -26,13 +26,7 @@ const NEAR_MEAN = 0.2
 /** Part of the light of air that shadows take at most where there are none to speak of. Greater: halos at silhouettes and at edges of clouds. */
 const LEAST_LOST = 5e-4
 
-/** Octaves that all depths are below. */
-const MOST_DEPTH = 64
-
-/**
- * Octaves beyond all depths: those of means where next to nothing is lost, where light is steep, and of pixels whose grounds are at different depths;
- * less than nought for these where light is not steep.
- */
+/** Octaves beyond all depths: those of means where next to nothing is lost, where light is steep, and of pixels whose grounds are at different depths. */
 const LIT_DEPTH = 512
 const STEEP_DEPTH = 540
 const APART_DEPTH = 6e4
@@ -113,10 +107,10 @@ export interface LostLight extends SeenAir {
  * depth: from nine, of which any four that touch have samples in all places of their steps.
  *
  * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
- * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels read nine pixels of the grid, or the
- * four around beside silhouettes and edges of clouds. Those that are alike in light and depth count most. They lose as much as these at their own depth, or where
- * light is steep, as about the sun, the same part of their own light, which is looked up. A pixel that is farther than all loses light up to their depth:
- * they know nothing of the air beyond.
+ * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of
+ * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and of four beside
+ * silhouettes and edges of clouds. Those that are alike in light and depth count most. One that is farther than all loses light up to their depth:
+ * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
  *
  * A depth is log₂ of the optical path of clear air, which thins out with height, that has as much light as is seen: clouds hide some of it.
  * It is a measure, no more: a pixel finds 1/τ², which needs no root and no quotient.
@@ -239,8 +233,7 @@ export class LostLightGrid {
       const isEven = apart.y.lessThan(MIXED_OCTAVES).and(most.y.lessThan(MAX_MIXED))
       const isLit = most.z.max(least.z.negate()).lessThan(most.y.exp2().mul(LEAST_LOST))
       const depth = result.w.add(isEven.select(0, STEEP_DEPTH))
-      const far = isEven.select(-APART_DEPTH, APART_DEPTH)
-      const marked = apart.x.lessThan(SAME_DEPTH).select(depth, far)
+      const marked = apart.x.lessThan(SAME_DEPTH).select(depth, APART_DEPTH)
       result.w.assign(isLit.select(LIT_DEPTH, marked))
     })
     return result
@@ -297,9 +290,8 @@ export class LostLightGrid {
     If(isOff(own).and(isOff(LIT_DEPTH)), () => {
       const size = this.#gridSize
       const place = middle.div(this.#texelSize).sub(1).toConst() as Vec2
-      const isApart = mean.w.abs().greaterThan(STEEP_LIMIT)
-      const first = isApart.select(place.floor().add(0.5), place).toConst() as Vec2
-      const isSteep = mean.w.greaterThan(MOST_DEPTH).toConst()
+      const isSteep = mean.w.lessThan(STEEP_LIMIT)
+      const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
       // Steps of a depth show where the nearest to it counts for more than others.
       const similar = (tolerance ?? float(0)).mul(2).max(SIMILAR).toConst()
       const even = similar.mul(similar).toConst()
@@ -307,12 +299,9 @@ export class LostLightGrid {
       const sums = vec4(0).toVar()
       const weights = float(0).toVar()
       loop('corner', 4, index => {
-        const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5)).toConst() as Vec2
-        const other = sampleLevel0(this.#lost, texel.div(size)).toVar()
-        If(isSteep, () => {
-          const beside = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
-          other.assign(sampleLevel0(this.#texels, beside))
-        })
+        const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
+        const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
+        const other = sampleLevel0(this.#texels, at).toConst()
         const light = rarity.add(1).div(rarityAt(other.w).add(1)).log2().mul(0.5)
         const apart = other.w.sub(own).abs().min(DISTINCT).max(light.abs()).toConst()
         const near = apart.mul(apart).add(even).reciprocal().toConst()
@@ -328,11 +317,7 @@ export class LostLightGrid {
         .toConst()
       const most = farther.lessThan(SAME_DEPTH).select(sums.w.add(farther.max(0)), LIT_DEPTH)
       const depth = own.add(moved(sums.w)).min(most).toConst() as Float
-      If(isSteep, () => {
-        lost.assign(partedLight(lit(this.#distanceAt(depth, least))).mul(sums.rgb))
-      }).Else(() => {
-        lost.assign(sums.rgb.mul(shownOf(rarityAt(depth)).div(LIGHT_SCALE)))
-      })
+      lost.assign(partedLight(lit(this.#distanceAt(depth, least))).mul(sums.rgb))
     })
     return lost
   }
