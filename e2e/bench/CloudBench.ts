@@ -48,6 +48,12 @@ function brokenCumulus(): CloudLayers {
   return layers
 }
 
+/** GPU time of a frame, and of its passes [ms]. */
+export interface FrameTimes {
+  ms: number
+  passes: number[]
+}
+
 /** Clouds over a globe, drawn as an app draws them: a pass, the air, the clouds. */
 export class CloudBench {
   readonly node: CloudsNode
@@ -116,11 +122,7 @@ export class CloudBench {
   }
 
   /** Draws frames at 60 a second, or one moment again and again; median GPU time [ms]. */
-  async time(
-    frames: number,
-    isStill = false,
-    warmUp = WARM_UP
-  ): Promise<{ ms: number; passes: number[] }> {
+  async time(frames: number, isStill = false, warmUp = WARM_UP): Promise<FrameTimes> {
     const totals: number[] = []
     const each: number[][] = []
     for (let i = 0; i < warmUp + frames; i++) {

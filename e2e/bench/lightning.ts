@@ -1,7 +1,7 @@
 import { cloudPreset, lightning } from '@welkin/clouds'
 import { Vector3 } from 'three'
 import { release, type HeadlessDevice } from '../headless/device'
-import { CloudBench, cloudViews } from './CloudBench'
+import { CloudBench, cloudViews, type FrameTimes } from './CloudBench'
 import { median } from './statistics'
 
 /** Distance of the flash from the camera [m]. */
@@ -21,12 +21,6 @@ export interface LightningCost {
   flashMs: number
   /** Passes of a frame without a flash, and with one. */
   darkPasses: number[]
-  passes: number[]
-}
-
-/** GPU time of a frame, and of its passes [ms]. */
-interface FrameTimes {
-  ms: number
   passes: number[]
 }
 

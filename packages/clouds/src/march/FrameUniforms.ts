@@ -224,7 +224,8 @@ export class FrameUniforms {
     this.unsureUntil.value = isKnown ? known : FAR_AWAY
     this.turn.value = this.#count % ROUND
     this.#forms = forms
-    this.#countForgetting(isCut, frames, view.lightDirection, cloudInputs(field, lightVersion))
+    const inputs = cloudInputs(forms, field, lightVersion)
+    this.#countForgetting(isCut, frames, view.lightDirection, inputs)
     const matrices = [...view.viewToMapped.elements, ...projection.elements]
     const isStill = !isCut && isAtRest && this.#forgetting <= 0 && isSame(matrices, this.#matrices)
     this.maxSamples.value = isStill

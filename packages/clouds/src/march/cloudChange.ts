@@ -14,16 +14,19 @@ export const cloudForms = ({ values }: CloudField): readonly number[] =>
 /** Numbers of a layer among `cloudForms`. */
 const LAYER_NUMBERS = 4 * (LAYER_STRIDE - count - last)
 
-/** All that shapes and lights the clouds, as numbers to compare with the last frame's. */
-export function cloudInputs(field: CloudField, lightVersion: number): readonly number[] {
-  const { moonDirection, moonIrradiance, skyRadiance } = field.night
+/**
+ * All that shapes and lights the clouds, as numbers to compare with the last frame's.
+ *
+ * @param forms - The frame's `cloudForms`.
+ */
+export function cloudInputs(
+  forms: readonly number[],
+  { night, ambient }: CloudField,
+  lightVersion: number
+): readonly number[] {
+  const { moonDirection, moonIrradiance, skyRadiance } = night
   const light = [moonDirection, moonIrradiance, skyRadiance]
-  return [
-    ...cloudForms(field),
-    ...light.flatMap(({ value }) => value.toArray()),
-    field.ambient.value,
-    lightVersion
-  ]
+  return [...forms, ...light.flatMap(({ value }) => value.toArray()), ambient.value, lightVersion]
 }
 
 /** Difference of two vectors over the greatest component of either, in [0, 2]. */
