@@ -28,7 +28,7 @@ export const defaultHeight = 180
 /** Tools of a GPU test. All that it creates is disposed when the test ends. */
 export interface GpuContext {
   readonly backend: Backend
-  /** An initialised renderer of this backend on a canvas in the page; 320×180, pixel ratio 1. */
+  /** An initialised renderer of this backend on a canvas that no page shows; 320×180, pixel ratio 1. */
   createRenderer: (options?: RendererOptions) => Promise<WebGPURenderer>
   /** One that shows metres and a planet at once. */
   createPlanetRenderer: (options?: RendererOptions) => Promise<WebGPURenderer>
@@ -57,7 +57,6 @@ async function createRenderer(
   { width = defaultWidth, height = defaultHeight, antialias = false, ...rest }: RendererOptions
 ): Promise<WebGPURenderer> {
   const canvas = document.createElement('canvas')
-  document.body.append(canvas)
   const renderer = new WebGPURenderer({
     canvas,
     antialias,
@@ -150,7 +149,6 @@ export function createContext(backend: Backend): ContextHandle {
         // The next test must not wait for what this one has queued.
         await finishWork(renderer)
         await renderer.dispose()
-        renderer.domElement.remove()
       }
       return { messages: watch.stop(), notes }
     }

@@ -5,6 +5,7 @@ import type { Backend } from '../../harness/backend'
 import { loadNoise } from '../harness/reuse-noise'
 import { filterCoarsely } from '../harness/filter-samples'
 import { keepTables, reuseTables } from '../harness/reuse-tables'
+import { requestOffscreenFrames } from '../../harness/offscreenFrames'
 import { freeResources, shareDevice } from '../../harness/shareDevice'
 import { setShadowSize } from '../harness/shadow-size'
 
@@ -31,6 +32,7 @@ declare global {
   }
 }
 
+requestOffscreenFrames()
 shareDevice()
 
 async function load(suite: string): Promise<GpuSuite> {

@@ -4,6 +4,7 @@ import type { Backend } from '../../harness/backend'
 import { filterCoarsely } from '../../gpu/harness/filter-samples'
 import { loadNoise } from '../../gpu/harness/reuse-noise'
 import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
+import { requestOffscreenFrames } from '../../harness/offscreenFrames'
 import { freeResources, shareDevice } from '../../harness/shareDevice'
 import { setShadowSize } from '../../gpu/harness/shadow-size'
 
@@ -60,6 +61,7 @@ async function findCreate(file: string): Promise<CreateScene> {
   return found[1] as CreateScene
 }
 
+requestOffscreenFrames()
 shareDevice()
 reuseTables(true)
 filterCoarsely(true)
@@ -104,7 +106,9 @@ window.welkinVisual = {
       frame: true
     }
     const canvas = document.createElement('canvas')
-    Object.assign(canvas.style, { display: 'block', width: '100vw', height: '100vh' })
+    // Hidden: the browser needs not draw it again.
+    const style = { display: 'block', width: '100vw', height: '100vh', visibility: 'hidden' }
+    Object.assign(canvas.style, style)
     document.body.append(canvas)
     const watch = new ConsoleWatch()
     // Other libraries may warn; three's warnings, and all errors, count.
