@@ -37,8 +37,8 @@ export function hashBits(i: number, j: number, k: number): Int32Array {
 
 /** Float64 twin of `hashCell`: three numbers in [0, 1) for a cell of a lattice. */
 export function hashCell(i: number, j: number, k: number, target = new Vector3()): Vector3 {
-  const [x, y, z] = hashBits(i, j, k)
-  return target.set((x >>> 9) / 2 ** 23, (y >>> 9) / 2 ** 23, (z >>> 9) / 2 ** 23)
+  const bits = hashBits(i, j, k)
+  return target.set((bits[0] >>> 9) / 2 ** 23, (bits[1] >>> 9) / 2 ** 23, (bits[2] >>> 9) / 2 ** 23)
 }
 
 const wrap = (i: number, cells: number): number => ((i % cells) + cells) % cells
@@ -50,21 +50,21 @@ const slopeOf = (t: number): number => 30 * t ** 2 * (1 - t) ** 2
 
 /** Float64 twin of `perlin`: gradient noise of period 1 in each coordinate, about [−1, 1]. */
 export function perlin(p: Vec3Array, cells: Vec3Array, seed: number): number {
-  const base = p.map((x, axis) => Math.floor(x * cells[axis]))
-  const part = p.map((x, axis) => x * cells[axis] - base[axis])
-  const fade = part.map(fadeOf)
+  const [x, y, z] = [p[0] * cells[0], p[1] * cells[1], p[2] * cells[2]]
+  const [i, j, k] = [Math.floor(x), Math.floor(y), Math.floor(z)]
+  const [u, v, w] = [x - i, y - j, z - k]
+  const [fadeX, fadeY, fadeZ] = [fadeOf(u), fadeOf(v), fadeOf(w)]
   let sum = 0
   for (let corner = 0; corner < 8; corner++) {
-    const offset = [corner & 1, (corner >> 1) & 1, corner >> 2]
-    const [i, j, k] = offset.map((o, axis) => wrap(base[axis] + o, cells[axis]))
-    const gradient = hashCell(i, j, k + seed, _hash).toArray()
-    let height = 0
-    let weight = 1
-    for (let axis = 0; axis < 3; axis++) {
-      height += (2 * gradient[axis] - 1) * (part[axis] - offset[axis])
-      weight *= offset[axis] === 1 ? fade[axis] : 1 - fade[axis]
-    }
-    sum += weight * height
+    const [a, b, c] = [corner & 1, (corner >> 1) & 1, corner >> 2]
+    const [cellX, cellY] = [wrap(i + a, cells[0]), wrap(j + b, cells[1])]
+    const gradient = hashCell(cellX, cellY, wrap(k + c, cells[2]) + seed, _hash)
+    const height =
+      (2 * gradient.x - 1) * (u - a) +
+      (2 * gradient.y - 1) * (v - b) +
+      (2 * gradient.z - 1) * (w - c)
+    const [weightX, weightY] = [a === 1 ? fadeX : 1 - fadeX, b === 1 ? fadeY : 1 - fadeY]
+    sum += weightX * weightY * (c === 1 ? fadeZ : 1 - fadeZ) * height
   }
   return 1.5 * sum
 }

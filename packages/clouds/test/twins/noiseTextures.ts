@@ -23,22 +23,32 @@ const contents: Record<NoiseName, (p: Vec3Array) => number[]> = {
 const mixed = (a: number[], b: number[], t: number): number[] =>
   a.map((value, i) => value + (b[i] - value) * t)
 
+/** Texels of all {@link NoiseTextures}, by texture and level, and by their place in it. */
+const _texels = new Map<string, Map<number, number[]>>()
+
+function texelsOf(name: NoiseName, level: number): Map<number, number[]> {
+  const key = `${name} ${level}`
+  const kept = _texels.get(key) ?? new Map<number, number[]>()
+  _texels.set(key, kept)
+  return kept
+}
+
 /**
  * Float64 twin of the noise textures, read as the GPU reads them. Texels are computed when they are
  * first needed and kept: a whole texture would take minutes.
  */
 export class NoiseTextures {
-  readonly #texels = new Map<string, number[]>()
-
   /** Texel of a level as the GPU stores it: bytes, as numbers in [0, 1]. */
   texel(name: NoiseName, index: Vec3Array, level = 0): number[] {
     const size = NOISE_SIZE[name] >> level
     const place = index.map(i => ((i % size) + size) % size) as [number, number, number]
-    const key = `${name} ${level} ${place.join(' ')}`
-    let texel = this.#texels.get(key)
+    const [x, y, z] = place
+    const key = (z * size + y) * size + x
+    const texels = texelsOf(name, level)
+    let texel = texels.get(key)
     if (texel === undefined) {
       texel = this.#compute(name, place, level).map(x => Math.round(x * 255) / 255)
-      this.#texels.set(key, texel)
+      texels.set(key, texel)
     }
     return texel
   }
