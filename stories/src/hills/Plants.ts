@@ -73,8 +73,7 @@ function tufts(): Plant[] {
   const [close, far] = [0.5, rings].map(part => 2 * Math.PI * TUFTS * GRASS_CLOSE ** 2 * part)
   return Array.from({ length: Math.round(close + far) }, (_, i) => {
     const angle = 2 * Math.PI * random()
-    const distance =
-      GRASS_CLOSE * (i < close ? Math.sqrt(random()) : Math.exp(rings * random()))
+    const distance = GRASS_CLOSE * (i < close ? Math.sqrt(random()) : Math.exp(rings * random()))
     const [x, z] = [distance * Math.cos(angle), distance * Math.sin(angle)]
     return { x, z, size: 0.7 + 0.6 * random(), tint: 0.25 * random() - 0.05 }
   })
@@ -113,7 +112,8 @@ export class Plants extends Group {
       woods.castShadow = false
       this.add(trees, woods)
     }
-    if (!isSnowy) this.add(createGrass('meadow', planted(tufts(), ground), uniforms, [GRASS, STRAW]))
+    if (!isSnowy)
+      this.add(createGrass('meadow', planted(tufts(), ground), uniforms, [GRASS, STRAW]))
     const [first] = this.children as Mesh[]
     first.onBeforeRender = (_renderer, _scene, camera) => {
       // Not that of a shadow.

@@ -135,7 +135,10 @@ function grown(color: Node<'vec3'>, noise: Noise): Node<'vec3'> {
 function relief(place: Node<'vec2'>, height: Node<'float'>, noise: Noise): Node<'vec3'> {
   const { period, step, height: high } = RELIEF
   const here = noise(period, place)
-  const slope = vec2(noise(period, place.add(vec2(step, 0))), noise(period, place.add(vec2(0, step))))
+  const slope = vec2(
+    noise(period, place.add(vec2(step, 0))),
+    noise(period, place.add(vec2(0, step)))
+  )
     .sub(here)
     .mul(smoothstep(20, 160, height).mul(high / step))
   return normalWorldGeometry.sub(vec3(slope.x, 0, slope.y)).normalize()
@@ -177,7 +180,9 @@ export function soilMaterial(soil: Soil): MeshStandardNodeMaterial {
     color = grown(mix(fields(place, plan), pasture, smoothstep(25, 90, height)), noise)
     const ragged = noise(730).mul(0.5).add(noise(170).mul(0.22)).add(noise(61).mul(0.14))
     const wooded = broad.add(ragged).add(smoothstep(15, 220, height).mul(0.75))
-    const woods = smoothstep(0.56, 0.64, wooded).mul(smoothstep(20, 45, height)).toConst()
+    const woods = smoothstep(0.56, 0.64, wooded)
+      .mul(smoothstep(20, 45, height))
+      .toConst()
     // Crowns with shade between them.
     const crowns = noise(97).add(noise(37).mul(0.8)).mul(0.75).add(1).max(0.25)
     const kind = smoothstep(-0.25, 0.25, noise(570).add(noise(130).mul(0.5)))

@@ -9,13 +9,7 @@ import {
 import { attribute, positionGeometry, transformNormalToView, varying } from 'three/tsl'
 import { setFoliage } from '../../valley/leaves'
 import type { PlantCells } from './PlantCells'
-import {
-  PlantMaterial,
-  plantNodes,
-  type Float,
-  type PlantUniforms,
-  type Vec3
-} from './plantShader'
+import { PlantMaterial, plantNodes, type Float, type PlantUniforms, type Vec3 } from './plantShader'
 
 /** Most trees with branches. */
 const MOST = 600
@@ -25,7 +19,10 @@ const MOST = 600
  *
  * @param fallen - As of `setFoliage`.
  */
-export function branchMaterial(uniforms: PlantUniforms, fallen: Float | null = null): PlantMaterial {
+export function branchMaterial(
+  uniforms: PlantUniforms,
+  fallen: Float | null = null
+): PlantMaterial {
   const material = new PlantMaterial({ side: DoubleSide })
   setFoliage(material, fallen)
   const { foot, size, tint, turned } = plantNodes(uniforms)

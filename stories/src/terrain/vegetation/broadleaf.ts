@@ -113,8 +113,7 @@ export function broadleaf(kind: keyof typeof SHAPES): BufferGeometry {
   }: Shape = SHAPES[kind]
   const random = randomSequence(29)
   const middle = new Vector3(0, MathUtils.lerp(base, height, 0.45), 0)
-  const parts: BufferGeometry[] =
-    thickness === 0 ? [] : [trunk(0.9 * height, thickness, bark, 6)]
+  const parts: BufferGeometry[] = thickness === 0 ? [] : [trunk(0.9 * height, thickness, bark, 6)]
   const [foot, tip, outwards, facing, vertex, inTree] = Array.from(
     { length: 6 },
     () => new Vector3()

@@ -125,7 +125,13 @@ export function createGrass(
   uniforms: PlantUniforms,
   blades = BLADES
 ): Mesh {
-  const { tuft: options, reach, thinning, wide: wider, light: [dark, bright] } = GRASSES[kind]
+  const {
+    tuft: options,
+    reach,
+    thinning,
+    wide: wider,
+    light: [dark, bright]
+  } = GRASSES[kind]
   const material = new PlantMaterial({ side: DoubleSide })
   // Within some metres there is no haze, but for thick mist.
   material.fog = kind !== 'near'
