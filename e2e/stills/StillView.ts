@@ -40,14 +40,14 @@ import {
 } from '@welkin/clouds'
 import { Ellipsoid } from '@welkin/geo'
 import { MathUtils, PerspectiveCamera, RenderTarget, Scene, Vector3 } from 'three'
-import { pass, shadow } from 'three/tsl'
+import { pass } from 'three/tsl'
 import { RenderPipeline, type Node, type WebGPURenderer } from 'three/webgpu'
 import { createNoiseTexture } from '../../stories/src/globe/detailNoise'
 import { createCity, type City } from '../../stories/src/globe/city'
 import { cloudReference, REFERENCE_SKIPPING } from '../bench/clouds'
 import { Landscape } from '../../stories/src/hills/Landscape'
 import { aeroplaneShadow } from '../../stories/src/shafts/aeroplaneShadow'
-import { castLandShadow, LIGHT_DISTANCE } from '../../stories/src/shafts/landShadow'
+import { castLandShadow, landShadow, LIGHT_DISTANCE } from '../../stories/src/shafts/landShadow'
 import { Ridge } from '../../stories/src/shafts/Ridge'
 import type { Still } from './Still'
 import { meadow, redDust, snow } from '../../stories/src/hills/soil'
@@ -170,7 +170,7 @@ export class StillView {
       const soil = isMars ? redDust : still.land === 'snow' ? snow : meadow
       const radius = atmosphere.parameters.bottomRadius
       this.#landscape =
-        still.land === 'ridge' ? new Ridge(radius) : new Landscape(radius, soil, !isMars)
+        still.land === 'ridge' ? new Ridge(radius) : new Landscape(renderer, radius, soil)
       scene.add(this.#landscape)
     }
 
@@ -206,7 +206,7 @@ export class StillView {
         precipitation: fallOf(layers)
       })
       const source = still.moon && moonlight?.source
-      Object.assign(key.shadow, { shadowNode: cloudShadow(node, shadow(key), source) })
+      Object.assign(key.shadow, { shadowNode: cloudShadow(node, landShadow(key), source) })
       cloudSkyLight(sky, node)
       shafts?.add(cloudAirShadow(node))
       if (still.aeroplane) shafts?.add(aeroplaneShadow())

@@ -15,18 +15,18 @@ import { cloudAirShadow, cloudPreset, clouds, cloudShadow, cloudSkyLight } from 
 import type { CloudsNode } from '@welkin/clouds'
 import { MathUtils, PerspectiveCamera, Scene } from 'three'
 import type { Object3D, Vector3 } from 'three'
-import { shadow } from 'three/tsl'
-import type { Node } from 'three/webgpu'
+import type { Node, WebGPURenderer } from 'three/webgpu'
 import { Air } from './air'
 import { STILL_QUALITY } from './clouds/still'
 import { createCity } from './globe/city'
 import { createNoiseTexture } from './globe/detailNoise'
-import { hillHeight, Landscape } from './hills/Landscape'
+import { hillHeight } from './hills/hillHeight'
+import { Landscape } from './hills/Landscape'
 import { meadow } from './hills/soil'
 import { Explorer } from './moving/Explorer'
 import { createRenderer, drawSettled, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
-import { castLandShadow, LIGHT_DISTANCE } from './shafts/landShadow'
+import { castLandShadow, landShadow, LIGHT_DISTANCE } from './shafts/landShadow'
 import { Ridge, ridgeHeight } from './shafts/Ridge'
 import { shaftViews, type ShaftView } from './shafts/views'
 import { storyHandle } from './storyHandle'
@@ -53,13 +53,14 @@ const FRAMES = 4
 
 /** Hills, a ridge or a city about the camera, if a view has any, in a Y-up frame on the ground. */
 function landOf(
+  renderer: WebGPURenderer,
   { land }: ShaftView,
   { parameters }: Atmosphere
 ): { object: Object3D; dispose: () => void } | undefined {
   if (land === 'planet') return undefined
   if (land === 'hills' || land === 'ridge') {
     const radius = parameters.bottomRadius
-    const object = land === 'ridge' ? new Ridge(radius) : new Landscape(radius, meadow, true)
+    const object = land === 'ridge' ? new Ridge(radius) : new Landscape(renderer, radius, meadow)
     return { object, dispose: () => object.dispose() }
   }
   const city = createCity(createNoiseTexture())
@@ -112,7 +113,7 @@ export async function createLightShafts(
     const moonSky = new SkyLightProbe(atmosphere, luna.source)
     scene.add(moonlight, moonlight.target, moonSky, new NightLightProbe(atmosphere))
   }
-  const land = landOf(view, atmosphere)
+  const land = landOf(renderer, view, atmosphere)
   if (land !== undefined) scene.add(land.object)
 
   const light = view.isMoonlit ? moonlight : sun
@@ -130,7 +131,7 @@ export async function createLightShafts(
     // #shown const preset = 'stratocumulus'
     const layers = cloudPreset(preset)
     const deck = clouds(lit, depth, camera, atmosphere, layers)
-    const shadows = cloudShadow(deck, shadow(light), light.source)
+    const shadows = cloudShadow(deck, landShadow(light), light.source)
     Object.assign(light.shadow, { shadowNode: shadows }) // clouds shade the land
     cloudSkyLight(sky, deck)
     shafts.add(cloudAirShadow(deck)) // and the air

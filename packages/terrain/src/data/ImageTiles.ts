@@ -128,7 +128,9 @@ export class ImageTiles extends PageImages {
       target.x = mercatorX(place.longitude)
       target.y = rowOf(place.latitude)
     }
-    return pagePlaces(request, project, 1)
+    const places = pagePlaces(request, project, 1)
+    places.find()
+    return places
   }
 
   #keysOf(z: number, { x, y }: PagePlaces): Set<number> {

@@ -18,6 +18,12 @@ const KEEP_FOR = 8
 /** Steps of a page within which its heights may differ from the ground: coarse pages have means over about as many. */
 const MARGIN_STEPS = 4
 
+/** Heights of a page, with the least and the greatest of its ground. */
+interface LoadedHeights {
+  readonly heights: Float32Array
+  readonly bounds: readonly [least: number, most: number]
+}
+
 /**
  * Pages of the ground: heights, slopes and patches of a tile, drawn once on the GPU, or loaded, and kept in a fixed atlas until others
  * need the room: the least recently used goes first.
@@ -30,7 +36,7 @@ export class HeightPages {
   #renderer: Renderer | null = null
   /** Tiles by the slot of their page. */
   readonly #owners: (Tile | null)[]
-  readonly #loads: PageLoads<Float32Array>
+  readonly #loads: PageLoads<LoadedHeights>
   /** Whole faces that are drawn flat until their heights arrive. */
   readonly #flat = new Set<Tile>()
   /** Answer of the source that is no heights. */
@@ -134,8 +140,12 @@ export class HeightPages {
   load(tiles: readonly Tile[], selection: number, most: number): number {
     let count = 0
     for (const tile of tiles) {
-      if (count >= most) break
       const heights = this.#heightsOf(tile, selection)
+      if (count >= most) {
+        // What takes time is asked for a frame ahead.
+        if (heights !== undefined || this.#loads.isFull) break
+        continue
+      }
       if (heights === undefined) continue
       const colors = this.#images?.colorsOf(tile, selection)
       if (this.#images !== null && colors === undefined) continue
@@ -155,14 +165,14 @@ export class HeightPages {
     return count
   }
 
-  #draw(tile: Tile, heights: Float32Array | null, slot: number): void {
-    this.#bake(tile, heights, slot)
+  #draw(tile: Tile, loaded: LoadedHeights | null, slot: number): void {
+    this.#bake(tile, loaded && loaded.heights, slot)
     this.#loads.delete(tile)
-    if (heights === null) return
+    if (loaded === null) return
     const { lowest, highest } = this.#source
     const spacing = spacingOf(tile, this.#baker.figure, this.atlas.surfaceSide - 1)
     const margin = this.#source.variation(MARGIN_STEPS * spacing)
-    const [least, most] = boundsOf(heights.subarray(0, this.#length))
+    const [least, most] = loaded.bounds
     tile.lowest = Math.min(Math.max(least - margin, lowest), least)
     tile.highest = Math.max(Math.min(most + margin, highest), most)
   }
@@ -178,7 +188,7 @@ export class HeightPages {
   }
 
   /** Heights to draw a page with: null for those of a function, undefined while there are none. */
-  #heightsOf(tile: Tile, selection: number): Float32Array | null | undefined {
+  #heightsOf(tile: Tile, selection: number): LoadedHeights | null | undefined {
     const source = this.#source
     if (!isPageSource(source)) return null
     const known = this.#loads.get(tile, selection)
@@ -194,13 +204,17 @@ export class HeightPages {
   }
 
   /** @throws If they cannot be drawn. */
-  #checked(heights: unknown): Float32Array {
-    const length = heights instanceof Float32Array ? heights.length : heights
+  #checked(answer: unknown): LoadedHeights {
+    const heights = answer as Float32Array
+    const length = answer instanceof Float32Array ? heights.length : answer
     const more = Number(length) - this.#length
     if (more !== 0 && more !== this.atlas.heightSide ** 2) this.#wrong = { answer: length }
-    // Caught where they were asked for, which is done again later.
-    else if (boundsOf(heights as Float32Array).every(Number.isFinite))
-      return heights as Float32Array
+    else {
+      const bounds = boundsOf(heights.subarray(0, this.#length))
+      const sky = boundsOf(heights.subarray(this.#length))
+      // Caught where they were asked for, which is done again later.
+      if (bounds.every(Number.isFinite) && !sky.some(Number.isNaN)) return { heights, bounds }
+    }
     throw new Error()
   }
 

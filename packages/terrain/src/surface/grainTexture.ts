@@ -51,34 +51,49 @@ function randomNumbers(seed: number): () => number {
   }
 }
 
-/** Number of a texel on the plane that the picture repeats on. */
-const texel = (x: number, y: number): number => (y & (SIZE - 1)) * SIZE + (x & (SIZE - 1))
+/** Number of the first texel of a row, and of one in a row, of the plane that the picture repeats on. */
+const rowAt = (y: number): number => (y & (SIZE - 1)) * SIZE
+const wrapped = (x: number): number => x & (SIZE - 1)
+
+/** Sides of a stone, and its top, as planes: height in the middle, and slopes along x and y. */
+const planes = new Float64Array(3 * (SIDES + 1))
 
 /** Raises the ground to a stone: a block with slanting sides, under a tilted top. */
 function addStone(heights: Float32Array, radius: number, random: () => number): void {
   const [x, y] = [random() * SIZE, random() * SIZE]
-  const sides = Array.from({ length: SIDES }, (_, side) => {
+  for (let side = 0; side < SIDES; side++) {
     const turn = ((side + random()) * 2 * Math.PI) / SIDES
     const away = radius * (0.55 + 0.45 * random())
     const steepness = 0.7 + 0.9 * random()
-    return { cosine: Math.cos(turn), sine: Math.sin(turn), away, steepness }
-  })
+    planes[3 * side] = away * steepness
+    planes[3 * side + 1] = -Math.cos(turn) * steepness
+    planes[3 * side + 2] = -Math.sin(turn) * steepness
+  }
   const lean = 2 * Math.PI * random()
   const tilt = 0.15 + 0.3 * random()
-  const [tiltX, tiltY] = [tilt * Math.cos(lean), tilt * Math.sin(lean)]
-  const top = radius * (0.25 + 0.35 * random())
+  planes[3 * SIDES] = radius * (0.25 + 0.35 * random())
+  planes[3 * SIDES + 1] = tilt * Math.cos(lean)
+  planes[3 * SIDES + 2] = tilt * Math.sin(lean)
   const reach = 1.2 * radius
   for (let j = Math.floor(y - reach); j <= y + reach; j++) {
-    for (let i = Math.floor(x - reach); i <= x + reach; i++) {
-      const [dx, dy] = [i - x, j - y]
-      const n = texel(i, j)
-      let height = top + dx * tiltX + dy * tiltY
-      // Most texels are out of the first sides already.
-      for (let side = 0; side < SIDES && height > heights[n]; side++) {
-        const { cosine, sine, away, steepness } = sides[side]
-        height = Math.min(height, (away - dx * cosine - dy * sine) * steepness)
+    const row = rowAt(j)
+    // Part of the row in which all planes are above the ground.
+    let from = Math.floor(x - reach) - x
+    let to = reach
+    for (let n = 0; n < planes.length; n += 3) {
+      const slope = planes[n + 1]
+      const edge = -(planes[n] + (j - y) * planes[n + 2]) / slope
+      if (slope > 0) from = Math.max(from, edge)
+      else to = Math.min(to, edge)
+    }
+    for (let i = Math.ceil(x + from); i <= x + to; i++) {
+      let height = Infinity
+      for (let n = 0; n < planes.length; n += 3) {
+        const plane = planes[n] + (i - x) * planes[n + 1] + (j - y) * planes[n + 2]
+        if (plane < height) height = plane
       }
-      heights[n] = Math.max(heights[n], height)
+      const n = row + wrapped(i)
+      if (height > heights[n]) heights[n] = height
     }
   }
 }
@@ -86,13 +101,21 @@ function addStone(heights: Float32Array, radius: number, random: () => number): 
 /** Lays a round spot over what is there: soft at its edge, with a shadow about it. */
 function addSpot(light: Float32Array, x: number, y: number, radius: number, value: number): void {
   const reach = radius + 1.5
-  for (let j = Math.floor(y - reach); j <= y + reach; j++) {
-    for (let i = Math.floor(x - reach); i <= x + reach; i++) {
-      const n = texel(i, j)
-      const inside = radius - Math.sqrt((i - x) ** 2 + (j - y) ** 2)
-      if (inside <= -1.5) continue
-      const cover = Math.min(Math.max(inside + 0.5, 0), 1)
-      const shade = Math.min(Math.max(inside + 1.5, 0), 1) * (1 - cover)
+  const full = Math.max(radius - 0.5, 0) ** 2
+  for (let j = Math.ceil(y - reach); j <= y + reach; j++) {
+    const row = rowAt(j)
+    const away = (j - y) ** 2
+    const half = Math.sqrt(reach ** 2 - away)
+    for (let i = Math.ceil(x - half); i <= x + half; i++) {
+      const n = row + wrapped(i)
+      const square = (i - x) ** 2 + away
+      if (square <= full) {
+        light[n] = value
+        continue
+      }
+      const inside = radius - Math.sqrt(square)
+      const cover = Math.max(inside + 0.5, 0)
+      const shade = Math.min(inside + 1.5, 1) * (1 - cover)
       light[n] = light[n] * (1 - 0.3 * shade) * (1 - cover) + value * cover
     }
   }
@@ -109,12 +132,16 @@ function addBlade(
   const bend = (random() - 0.5) * (1.8 / length)
   const width = BLADE_WIDTH * (0.5 + 0.6 * random())
   const brightness = random() < DRY_BLADES ? DRY_LIGHT : 0.42 + 0.3 * random()
+  let [stepX, stepY] = [STEP * Math.cos(turn), STEP * Math.sin(turn)]
+  const [cosine, sine] = [Math.cos(STEP * bend), Math.sin(STEP * bend)]
   for (let step = 0; step < length; step += STEP) {
     const part = step / length
     addSpot(light, x, y, width * (1 - part ** 2), brightness * (0.62 + 0.38 * part))
-    x += STEP * Math.cos(turn)
-    y += STEP * Math.sin(turn)
-    turn += STEP * bend
+    x += stepX
+    y += stepY
+    const turned = stepX * cosine - stepY * sine
+    stepY = stepX * sine + stepY * cosine
+    stepX = turned
   }
 }
 
@@ -154,10 +181,11 @@ function addHerb(light: Float32Array, random: () => number): void {
   }
 }
 
-/** Takes the mean off, so that levels of detail fade to 0. */
-function center(values: Float32Array): Float32Array {
-  const mean = values.reduce((sum, value) => sum + value, 0) / values.length
-  return values.map(value => value - mean)
+/** Mean to be taken off, so that levels of detail fade to 0. */
+function meanOf(values: Float32Array): number {
+  let sum = 0
+  for (let n = 0; n < values.length; n++) sum += values[n]
+  return sum / values.length
 }
 
 /**
@@ -166,25 +194,27 @@ function center(values: Float32Array): Float32Array {
  */
 export function grainTexture(): DataTexture {
   const random = randomNumbers(311)
-  const raised = new Float32Array(SIZE ** 2)
+  const stones = new Float32Array(SIZE ** 2)
   for (let n = 0; n < STONES; n++) {
     // As many per size as there are of pieces when rock breaks: small ones fill the gaps.
     const share = random() * (1 / SMALLEST ** 2 - 1 / LARGEST ** 2) + 1 / LARGEST ** 2
-    addStone(raised, share ** -0.5, random)
+    addStone(stones, share ** -0.5, random)
   }
-  const stones = center(raised)
-  const blades = center(grass(random))
+  const blades = grass(random)
+  const [level, mean] = [meanOf(stones), meanOf(blades)]
   // Rounds and clamps by itself.
   const bytes = new Uint8ClampedArray(4 * SIZE ** 2)
-  const encode = (value: number, most: number): number => 127.5 + (127.5 * value) / most
-  for (let n = 0; n < SIZE ** 2; n++) {
-    const [x, y] = [n % SIZE, Math.floor(n / SIZE)]
-    const rise = (i: number, j: number): number =>
-      (stones[texel(x + i, y + j)] - stones[texel(x - i, y - j)]) / 2
-    bytes[4 * n] = encode(rise(1, 0), GRAIN_SLOPE)
-    bytes[4 * n + 1] = encode(rise(0, 1), GRAIN_SLOPE)
-    bytes[4 * n + 2] = encode(stones[n], STONE_HEIGHT)
-    bytes[4 * n + 3] = encode(blades[n], BLADE_CONTRAST)
+  for (let y = 0; y < SIZE; y++) {
+    const [above, row, below] = [rowAt(y - 1), rowAt(y), rowAt(y + 1)]
+    for (let x = 0; x < SIZE; x++) {
+      const n = row + x
+      const across = stones[row + wrapped(x + 1)] - stones[row + wrapped(x - 1)]
+      const along = stones[below + x] - stones[above + x]
+      bytes[4 * n] = 127.5 * (1 + across / (2 * GRAIN_SLOPE))
+      bytes[4 * n + 1] = 127.5 * (1 + along / (2 * GRAIN_SLOPE))
+      bytes[4 * n + 2] = 127.5 * (1 + (stones[n] - level) / STONE_HEIGHT)
+      bytes[4 * n + 3] = 127.5 * (1 + (blades[n] - mean) / BLADE_CONTRAST)
+    }
   }
   const texture = new DataTexture(bytes, SIZE, SIZE)
   texture.name = 'Welkin.Terrain.grain'

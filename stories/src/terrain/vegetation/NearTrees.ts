@@ -9,10 +9,30 @@ import {
 import { attribute, positionGeometry, transformNormalToView, varying } from 'three/tsl'
 import { setFoliage } from '../../valley/leaves'
 import type { PlantCells } from './PlantCells'
-import { PlantMaterial, plantNodes, type PlantUniforms, type Vec3 } from './plantShader'
+import { PlantMaterial, plantNodes, type Float, type PlantUniforms, type Vec3 } from './plantShader'
 
 /** Most trees with branches. */
 const MOST = 600
+
+/**
+ * Material of trees with branches.
+ *
+ * @param fallen - As of `setFoliage`.
+ */
+export function branchMaterial(
+  uniforms: PlantUniforms,
+  fallen: Float | null = null
+): PlantMaterial {
+  const material = new PlantMaterial({ side: DoubleSide })
+  setFoliage(material, fallen)
+  const { foot, size, tint, turned } = plantNodes(uniforms)
+  material.positionNode = foot.add(turned((positionGeometry as unknown as Vec3).mul(size)))
+  const normal = turned(attribute<'vec3'>('normal', 'vec3')).normalize()
+  material.normalNode = varying(transformNormalToView(normal as never) as unknown as Vec3)
+  const color = attribute<'vec3'>('color', 'vec3').mul(tint)
+  material.colorNode = (material.colorNode as Vec3).mul(varying(color))
+  return material
+}
 
 /** Trees with branches, which cast shadows: those of the cells that are near the viewer. */
 export class NearTrees extends Mesh<InstancedBufferGeometry, PlantMaterial> {
@@ -27,15 +47,7 @@ export class NearTrees extends Mesh<InstancedBufferGeometry, PlantMaterial> {
     for (const [name, values] of Object.entries(tree.attributes))
       geometry.setAttribute(name, values)
     geometry.setIndex(tree.index)
-    const material = new PlantMaterial({ side: DoubleSide })
-    setFoliage(material)
-    const { foot, size, tint, turned } = plantNodes(uniforms)
-    material.positionNode = foot.add(turned((positionGeometry as unknown as Vec3).mul(size)))
-    const normal = turned(attribute<'vec3'>('normal', 'vec3')).normalize()
-    material.normalNode = varying(transformNormalToView(normal as never) as unknown as Vec3)
-    const color = attribute<'vec3'>('color', 'vec3').mul(tint)
-    material.colorNode = (material.colorNode as Vec3).mul(varying(color))
-    super(geometry, material)
+    super(geometry, branchMaterial(uniforms))
     geometry.setAttribute('plantPlace', this.#places)
     geometry.setAttribute('plantLook', this.#looks)
     this.#cells = cells

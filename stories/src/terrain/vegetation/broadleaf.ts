@@ -17,22 +17,25 @@ interface Shape {
   /** Greatest radius of the crown, and its height as a part of the crown's [m, –]. */
   readonly radius: number
   readonly widest: number
+  /** Radius of the leaves about a bough over the crown's, below and at the top. */
+  readonly bough: readonly [below: number, above: number]
   /** Boughs, and sprays of leaves along the outer part of each. */
   readonly boughs: number
   readonly sprays: number
   readonly leaves: Color
   readonly bark: Color
-  /** Radius of the trunk at its foot [m]. */
+  /** Radius of the trunk at its foot [m]; 0: neither it nor boughs are seen. */
   readonly trunk: number
 }
 
-/** A lime tree, broad and low, and a slender birch, whose bark is white. */
+/** A lime tree, broad and low; a slender birch, whose bark is white; an old oak that stands alone; a bush of a hedge. */
 const SHAPES = {
   lime: {
     height: 9.3,
     base: 1.9,
     radius: 3.1,
     widest: 0.4,
+    bough: [0.36, 0.26],
     boughs: 32,
     sprays: 11,
     leaves: LEAVES,
@@ -44,11 +47,36 @@ const SHAPES = {
     base: 2.3,
     radius: 1.75,
     widest: 0.32,
+    bough: [0.36, 0.26],
     boughs: 26,
     sprays: 9,
     leaves: [0.076, 0.104, 0.029],
     bark: [0.2, 0.185, 0.165],
     trunk: 0.14
+  },
+  oak: {
+    height: 17.5,
+    base: 2.6,
+    radius: 6.9,
+    widest: 0.42,
+    bough: [0.26, 0.2],
+    boughs: 58,
+    sprays: 11,
+    leaves: [0.046, 0.073, 0.022],
+    bark: BARK,
+    trunk: 0.5
+  },
+  bush: {
+    height: 2.9,
+    base: 0.05,
+    radius: 1.9,
+    widest: 0.35,
+    bough: [0.62, 0.46],
+    boughs: 9,
+    sprays: 5,
+    leaves: [0.056, 0.084, 0.025],
+    bark: BARK,
+    trunk: 0
   }
 } satisfies Record<string, Shape>
 
@@ -76,6 +104,7 @@ export function broadleaf(kind: keyof typeof SHAPES): BufferGeometry {
     base,
     radius,
     widest,
+    bough: [below, above],
     boughs,
     sprays,
     leaves,
@@ -84,7 +113,7 @@ export function broadleaf(kind: keyof typeof SHAPES): BufferGeometry {
   }: Shape = SHAPES[kind]
   const random = randomSequence(29)
   const middle = new Vector3(0, MathUtils.lerp(base, height, 0.45), 0)
-  const parts: BufferGeometry[] = [trunk(0.9 * height, thickness, bark, 6)]
+  const parts: BufferGeometry[] = thickness === 0 ? [] : [trunk(0.9 * height, thickness, bark, 6)]
   const [foot, tip, outwards, facing, vertex, inTree] = Array.from(
     { length: 6 },
     () => new Vector3()
@@ -94,15 +123,17 @@ export function broadleaf(kind: keyof typeof SHAPES): BufferGeometry {
     const up = (i + 0.5 + 0.6 * (random() - 0.5)) / boughs
     const turn = GOLDEN * i + 0.7 * random()
     const reach = radius * profile(up, widest) * (0.62 + 0.3 * random()) * (1 - up ** 6)
-    const size = radius * MathUtils.lerp(0.36, 0.26, up) * (0.8 + 0.45 * random())
+    const size = radius * MathUtils.lerp(below, above, up) * (0.8 + 0.45 * random())
     tip.set(reach * Math.cos(turn), base + crownHeight * up, reach * Math.sin(turn))
     tip.y = Math.min(tip.y, height - 0.4 * size)
     // It rises from the trunk.
     foot.set(0, Math.max(tip.y - 0.9 * reach - 0.3, 0.75 * base), 0)
-    const bough = tip.clone().sub(foot)
-    const limb = trunk(bough.length(), thickness * MathUtils.lerp(0.36, 0.12, up), bark, 3)
-    limb.rotateX(Math.acos(bough.y / bough.length())).rotateY(Math.atan2(bough.x, bough.z))
-    parts.push(limb.translate(0, foot.y, 0))
+    if (thickness > 0) {
+      const bough = tip.clone().sub(foot)
+      const limb = trunk(bough.length(), thickness * MathUtils.lerp(0.36, 0.12, up), bark, 3)
+      limb.rotateX(Math.acos(bough.y / bough.length())).rotateY(Math.atan2(bough.x, bough.z))
+      parts.push(limb.translate(0, foot.y, 0))
+    }
     for (let j = 0; j < sprays; j++) {
       const y = 1 - (2 * (j + 0.5)) / sprays
       const level = Math.sqrt(1 - y * y)

@@ -29,12 +29,12 @@ import {
 } from 'three/tsl'
 import { MeshBasicNodeMaterial, type Node, type WebGPURenderer } from 'three/webgpu'
 import { setFoliage } from '../../valley/leaves'
-import type { PlantCells } from './PlantCells'
 import {
   plantGeometry,
   PlantMaterial,
   plantNodes,
   type Float,
+  type Planted,
   type PlantUniforms,
   type Vec3
 } from './plantShader'
@@ -44,8 +44,13 @@ const SIDES = 8
 const WIDTH = 128
 const HEIGHT = 208
 
+export interface Frame {
+  readonly width: number
+  readonly height: number
+}
+
 /** Width and height that a picture shows, the tree's foot in the middle of its lower edge [m]. */
-const FRAME = { width: 6.6, height: 11 }
+const FRAME: Frame = { width: 6.6, height: 11 }
 
 /** Coverage from which a picture is solid near and far: its means are thinner than leaves are. */
 const SOLID = [0.45, 0.22] as const
@@ -55,12 +60,23 @@ const FAR = 600
 export interface TreePictures {
   readonly color: RenderTarget
   readonly normal: RenderTarget
+  /** What each shows [m]. */
+  readonly frame: Frame
 }
 
-/** Draws a tree from all sides. */
-export function drawPictures(renderer: WebGPURenderer, geometry: BufferGeometry): TreePictures {
+/**
+ * Draws a tree from all sides.
+ *
+ * @param fallen - As of `setFoliage`.
+ */
+export function drawPictures(
+  renderer: WebGPURenderer,
+  geometry: BufferGeometry,
+  frame = FRAME,
+  fallen: Float | null = null
+): TreePictures {
   const scene = new Scene()
-  const { width, height } = FRAME
+  const { width, height } = frame
   const camera = new OrthographicCamera(-width / 2, width / 2, height, 0, 0, 40)
   const target = (): RenderTarget =>
     new RenderTarget(SIDES * WIDTH, HEIGHT, {
@@ -69,11 +85,11 @@ export function drawPictures(renderer: WebGPURenderer, geometry: BufferGeometry)
       minFilter: LinearMipmapLinearFilter,
       magFilter: LinearFilter
     })
-  const pictures = { color: target(), normal: target() }
+  const pictures = { color: target(), normal: target(), frame }
   const colors = new MeshBasicNodeMaterial({ vertexColors: true, side: DoubleSide })
-  setFoliage(colors)
+  setFoliage(colors, fallen)
   const normals = new MeshBasicNodeMaterial({ side: DoubleSide })
-  setFoliage(normals)
+  setFoliage(normals, fallen)
   normals.colorNode = attribute<'vec3'>('normal', 'vec3').normalize().mul(0.5).add(0.5)
   const mesh = new Mesh(geometry)
   mesh.frustumCulled = false
@@ -119,7 +135,7 @@ export function drawPictures(renderer: WebGPURenderer, geometry: BufferGeometry)
  */
 export function createImpostors(
   pictures: TreePictures,
-  cells: PlantCells,
+  plants: Planted,
   uniforms: PlantUniforms,
   from: number,
   goes: readonly [number, number]
@@ -131,7 +147,8 @@ export function createImpostors(
     .greaterThan(from)
     .select(smoothstep(goes[0], goes[1], distance.mul(random.mul(0.2).add(0.9))).oneMinus(), 0)
   const scaled = size.mul(shown)
-  const towards = (to: Vec3): Picture => pictureTowards(to, yaw, foot, scaled)
+  const { frame } = pictures
+  const towards = (to: Vec3): Picture => pictureTowards(to, yaw, { foot, size: scaled, frame })
   const seen = towards(uniforms.viewer.sub(foot).toConst())
   const lit = towards(uniforms.sun)
   const at = seen.at
@@ -153,7 +170,7 @@ export function createImpostors(
   )
   material.normalNode = transformNormalToView(turned.normalize())
   const mesh = new Mesh(
-    plantGeometry(new PlaneGeometry(1, 1).translate(0, 0.5, 0), cells),
+    plantGeometry(new PlaneGeometry(1, 1).translate(0, 0.5, 0), plants),
     material
   )
   mesh.frustumCulled = false
@@ -173,14 +190,18 @@ interface Picture {
  * @param to - Way from its foot to that, of any length.
  * @param yaw - Turn of the tree about the vertical.
  */
-function pictureTowards(to: Vec3, yaw: Float, foot: Vec3, size: Float): Picture {
+function pictureTowards(
+  to: Vec3,
+  yaw: Float,
+  { foot, size, frame }: { foot: Vec3; size: Float; frame: Frame }
+): Picture {
   const level = to.xz.length().max(1e-3).toConst() as unknown as Float
   // Azimuth about the tree, in its own frame.
   const azimuth = to.x.atan(to.z).sub(yaw).toConst() as unknown as Float
   const right = vec3(to.z.div(level), 0, to.x.div(level).negate())
   const { x, y } = positionGeometry
-  const across = right.mul(x.mul(FRAME.width))
-  const position = foot.add(across.add(vec3(0, y.mul(FRAME.height), 0)).mul(size))
+  const across = right.mul(x.mul(frame.width))
+  const position = foot.add(across.add(vec3(0, y.mul(frame.height), 0)).mul(size))
   const sector = floor(
     fract(azimuth.div(2 * Math.PI))
       .mul(SIDES)

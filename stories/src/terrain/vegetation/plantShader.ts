@@ -3,7 +3,7 @@ import { airAtVertices } from '@welkin/atmosphere'
 import { attribute, cos, mix, sin, uniform, vec3 } from 'three/tsl'
 import { MeshLambertNodeMaterial, type Node } from 'three/webgpu'
 import { Vector3 } from 'three'
-import type { PlantCells, Thinning } from './PlantCells'
+import type { Thinning } from './PlantCells'
 
 export type Float = Node<'float'>
 export type Vec3 = Node<'vec3'>
@@ -47,15 +47,18 @@ export function plantNodes({ viewer }: PlantUniforms): PlantNodes {
   }
 }
 
-/** Geometry of one plant for all in cells: one draw call. */
-export function plantGeometry(
-  geometry: BufferGeometry,
-  cells: PlantCells
-): InstancedBufferGeometry {
+/** Plants of one kind: those in cells about a viewer, or some that stand for good. */
+export interface Planted {
+  /** Gives a geometry their places and looks. */
+  add(geometry: InstancedBufferGeometry): void
+}
+
+/** Geometry of one plant for all of a kind: one draw call. */
+export function plantGeometry(geometry: BufferGeometry, plants: Planted): InstancedBufferGeometry {
   const all = new InstancedBufferGeometry()
   for (const [name, values] of Object.entries(geometry.attributes)) all.setAttribute(name, values)
   all.setIndex(geometry.index)
-  cells.add(all)
+  plants.add(all)
   return all
 }
 

@@ -1,5 +1,5 @@
-/** A number in [0, 1) for a point of whole numbers. */
-function hashed(x: number, z: number, seed: number): number {
+/** Pseudo-random number of a point of whole numbers, in [0, 1). */
+export function hashed(x: number, z: number, seed: number): number {
   let bits = Math.imul(x, 0x27d4eb2d) ^ Math.imul(z, 0x165667b1) ^ Math.imul(seed, 0x9e3779b1)
   bits = Math.imul(bits ^ (bits >>> 15), 0x85ebca6b)
   bits = Math.imul(bits ^ (bits >>> 13), 0xc2b2ae35)
