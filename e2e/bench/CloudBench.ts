@@ -54,6 +54,14 @@ export interface FrameTimes {
   passes: number[]
 }
 
+/** What clouds scatter light by. */
+export interface CloudBenchOptions {
+  /** Default: lobes of a fair-weather cloud. */
+  light?: CloudLightTable
+  /** False for rain without rainbows. */
+  hasRainbows?: boolean
+}
+
 /** Clouds over a globe, drawn as an app draws them: a pass, the air, the clouds. */
 export class CloudBench {
   readonly node: CloudsNode
@@ -68,7 +76,7 @@ export class CloudBench {
     new MeshBasicMaterial({ color: 0x557799 })
   )
   readonly #noise = new CloudNoise()
-  readonly #light = new CloudLightTable()
+  readonly #light: CloudLightTable
   /** Pose of the camera by `look`. */
   #pose = new Matrix4()
   #frame = 0
@@ -77,8 +85,9 @@ export class CloudBench {
     renderer: WebGPURenderer,
     [width, height]: readonly [number, number],
     layers: CloudLayers = brokenCumulus(),
-    hasBows = true
+    { light = new CloudLightTable(), hasRainbows = true }: CloudBenchOptions = {}
   ) {
+    this.#light = light
     this.#renderer = renderer
     renderer.toneMapping = ACESFilmicToneMapping
     const atmosphere = this.#atmosphere
@@ -90,7 +99,7 @@ export class CloudBench {
     const depth = scenePass.getTextureNode('depth')
     this.#air = aerialPerspective(scenePass.getTextureNode(), depth, camera, atmosphere)
     const rains = [...layers].some(layer => layer.precipitation?.rate)
-    const drops = hasBows ? raindrops() : undefined
+    const drops = hasRainbows ? raindrops() : undefined
     const precipitation = rains ? precipitationShafts({ drops }) : undefined
     const options = { noise: this.#noise, light: this.#light, precipitation }
     this.node = clouds(this.#air, depth, camera, atmosphere, layers, options)

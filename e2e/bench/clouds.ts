@@ -13,15 +13,13 @@ interface CloudCase {
   /** Elevation of the sun [°], default 40. */
   sunElevation?: number
   qualities: readonly CloudQualityName[]
-  /** False for rain without rainbows. */
-  hasBows?: boolean
 }
 
 const everyQuality = ['low', 'medium', 'high', 'ultra'] as const
 const [ground] = cloudViews
 
 /** Showers that bring rain to the view from the ground, near and far. */
-function shower(): CloudLayers {
+export function shower(): CloudLayers {
   const layers = cloudPreset('shower')
   layers.at(0).set({ coverage: 0.6 })
   return layers
@@ -55,13 +53,6 @@ const cloudCases: readonly CloudCase[] = [
     qualities: ['medium', 'high']
   },
   { name: 'shower', view: ground, layers: shower, qualities: ['high'] },
-  {
-    name: 'shower, without bows',
-    view: ground,
-    layers: () => shower(),
-    qualities: ['high'],
-    hasBows: false
-  },
   { name: 'shower, dry', view: ground, layers: dryShower, qualities: ['high'] }
 ]
 
@@ -197,7 +188,7 @@ export async function timeClouds(
   const cases = cloudCases.filter(({ name }) => name.startsWith(prefix))
   for (const layers of new Set(cases.map(timed => timed.layers))) {
     const own = cases.filter(other => other.layers === layers)
-    const bench = new CloudBench(renderer, size, layers?.(), own[0].hasBows)
+    const bench = new CloudBench(renderer, size, layers?.())
     for (const timed of own) {
       const timings = await timeCase(bench, timed, frames)
       timings.forEach(tell)

@@ -2,6 +2,7 @@ import { writeFileSync } from 'node:fs'
 import { parseArgs } from 'node:util'
 import { HeadlessDevice } from '../headless/device'
 import { airLine, PATHS, timeAir, timeBake, timeFirstFrame } from './air'
+import { bowLine, timeBows } from './bows'
 import { cloudLine, timeClouds, timeNoise } from './clouds'
 import { timeEnvironment } from './environment'
 import { firstPictureLines, flightLine, measureFlight, timeFirstPictures } from './flight'
@@ -83,6 +84,11 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
     const costs = await timeLightning(device, size, frames)
     for (const cost of costs) log(lightningLine(cost))
     return { lightning: costs }
+  },
+  async bows() {
+    const bows = await timeBows(device, size, frames)
+    for (const cost of bows) log(bowLine(cost))
+    return { bows }
   },
   async valley() {
     const valley = await timeValley(device, size, frames, values.rows, log)

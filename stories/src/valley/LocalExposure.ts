@@ -58,7 +58,7 @@ const logOf = (color: Node): Float => log2(luminance(color).max(2 ** DARKEST))
 export class LocalExposure {
   readonly #picture: TextureNode
   readonly #cells = tableTarget('LocalExposureCells', ...CELLS)
-  readonly #grid = tableTarget('LocalExposure', TILES[0] * LEVELS, TILES[1])
+  readonly #grid = tableTarget('LocalExposure', TILES[0] * (LEVELS - 1), TILES[1])
   readonly #passes: readonly [FragmentPass, FragmentPass]
   readonly #strength = uniform(1)
   /** Stops of the next picture's luminance scale over that of the grid. */
@@ -90,21 +90,25 @@ export class LocalExposure {
     })()
   }
 
-  /** Sum of log2 luminance of the cells about a tile, by how near and how much like the level they are, and of these weights. */
+  /**
+   * Sum of log2 luminance of the cells about a tile, by how near and how much like the level they are, and of these weights; then
+   * those of the next level, so that a pixel between both reads one texel.
+   */
   #gridTexel(): Vec4 {
     return Fn(() => {
       const texel = screenCoordinate.xy.floor().toConst()
       const level = texel.x.div(TILES[0]).floor().toConst()
       const [darkest, brightest] = STOPS
-      const light = level
+      const lights = vec2(level, level.add(1))
         .add(0.5)
         .mul((brightest - darkest) / LEVELS)
         .add(darkest)
+        .toConst()
       const tile = vec2(texel.x.sub(level.mul(TILES[0])), texel.y)
         .add(0.5)
         .div(vec2(...TILES))
         .toConst()
-      const sum = vec2(0).toVar()
+      const sum = vec4(0).toVar()
       const side = 2 * Math.floor(REACH / EVERY) + 1
       Loop(side * side, ({ i }) => {
         const offset = vec2(int(i).mod(side), int(i).div(side))
@@ -113,12 +117,12 @@ export class LocalExposure {
           .toConst()
         const place = tile.add(offset.div(vec2(...CELLS)))
         const log = (texture(this.#cells.texture, place).level(float(0)) as unknown as Vec4).r
-        const unlike = log.sub(light).div(LIKE)
+        const unlike = vec2(log).sub(lights).div(LIKE).toConst()
         const apart = offset.dot(offset).div(BLUR * BLUR)
-        const weight = exp2(apart.add(unlike.mul(unlike)).mul(-0.72)).toConst() as unknown as Float
-        sum.addAssign(vec2(log, 1).mul(weight))
+        const weights = exp2(unlike.mul(unlike).add(apart).mul(-0.72)) as unknown as Vec2
+        sum.addAssign(vec4(log, 1, log, 1).mul(weights.xxyy))
       })
-      return vec4(sum, 0, 1)
+      return sum
     })()
   }
 
@@ -160,13 +164,10 @@ export class LocalExposure {
       .mul(2)
       .reciprocal()
     const place = uv().clamp(half, half.oneMinus()).toConst()
-    const at = (slice: Float): Vec2 =>
-      (
-        texture(this.#grid.texture, vec2(place.x.add(slice).div(LEVELS), place.y)).level(
-          float(0)
-        ) as unknown as Vec4
-      ).rg
-    const found = mix(at(lower), at(lower.add(1)), level.sub(lower)).toConst()
+    const tile = vec2(place.x.add(lower).div(LEVELS - 1), place.y)
+    const sums = texture(this.#grid.texture, tile).level(float(0)) as unknown as Vec4
+    const both = sums.toConst()
+    const found = mix(both.xy, both.zw, level.sub(lower)).toConst()
     const base = found.x.div(found.y.max(1e-4)).add(this.#shift)
     const under = float(KEY).sub(base).toConst()
     const part = under.greaterThan(0).select(DODGE, BURN)

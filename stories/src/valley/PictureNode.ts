@@ -1,5 +1,5 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import { Vector2 } from 'three'
+import { HalfFloatType, type TextureDataType, Vector2 } from 'three'
 import { uv } from 'three/tsl'
 import { NodeUpdateType, TextureNode } from 'three/webgpu'
 import type { Node, NodeFrame } from 'three/webgpu'
@@ -22,10 +22,12 @@ export class PictureNode extends TextureNode {
 
   /**
    * @param name - Name of the pass.
-   * @param picture - Its pixels, half floats.
+   * @param picture - Its pixels.
+   * @param type - Type of their numbers; bytes are enough for colours of the display, and are read in half the time.
    */
-  constructor(name: string, picture: Node<'vec4'>) {
+  constructor(name: string, picture: Node<'vec4'>, type: TextureDataType = HalfFloatType) {
     const target = tableTarget(name, 1, 1)
+    target.texture.type = type
     super(target.texture, uv())
     this.#target = target
     this.#pass = new FragmentPass(name, picture)

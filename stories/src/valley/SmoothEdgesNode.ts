@@ -29,6 +29,7 @@ const THIN = 0.05
 type Float = Node<'float'>
 type Vec2 = Node<'vec2'>
 type Vec4 = Node<'vec4'>
+type Variable = Vec4 & { assign(value: Vec4): void }
 
 /** Smooths stairs along edges: see {@link smoothEdges}. */
 export class SmoothEdgesNode extends Node<'vec4'> {
@@ -56,21 +57,19 @@ export const smoothEdges = (picture: TextureNode): SmoothEdgesNode => new Smooth
 
 function smoothed(picture: TextureNode): Vec4 {
   const read = (place: Vec2): Vec4 => picture.sample(place).level(float(0))
-  const lightAt = (place: Vec2): Float =>
-    read(place)
-      .rgb.dot(vec3(0.299, 0.587, 0.114))
-      .toConst()
+  const lightOf = ({ rgb }: Vec4): Float => rgb.dot(vec3(0.299, 0.587, 0.114)).toConst()
+  const lightAt = (place: Vec2): Float => lightOf(read(place))
   return Fn(() => {
     const here = uv().toConst()
     const texel = vec2(textureSize(picture, int(0)) as unknown as Vec2)
       .reciprocal()
       .toConst()
     const beside = (x: number, y: number): Float => lightAt(here.add(texel.mul(vec2(x, y))))
-    const middle = beside(0, 0)
+    const color = read(here).toVar() as Variable
+    const middle = lightOf(color)
     const [north, south, west, east] = [beside(0, -1), beside(0, 1), beside(-1, 0), beside(1, 0)]
     const highest = max(middle, north, south, west, east).toConst()
     const lowest = min(middle, north, south, west, east)
-    const place = here.toVar()
     const contrast = highest.sub(lowest).toConst()
     If(contrast.greaterThan(max(EDGE[0], highest.mul(EDGE[1]))), () => {
       const [nw, ne, sw, se] = [beside(-1, -1), beside(1, -1), beside(-1, 1), beside(1, 1)]
@@ -120,8 +119,9 @@ function smoothed(picture: TextureNode): Vec4 {
         .mul(after.sub(middle))
         .greaterThan(contrast.mul(contrast).mul(THIN))
       // What is brighter or darker than both sides is a star or a drop, not an edge.
-      place.addAssign(across.mul(isThin.select(0, max(isOther.select(part, 0), corner))))
+      const moved = across.mul(isThin.select(0, max(isOther.select(part, 0), corner)))
+      color.assign(read(here.add(moved)))
     })
-    return read(place)
+    return color
   })()
 }

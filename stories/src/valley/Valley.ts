@@ -34,7 +34,7 @@ import { StreetLamps } from './StreetLamps'
 import { StepClock } from './StepClock'
 import { setLit } from './litLights'
 import { SkyLightMap } from './SkyLightMap'
-import { setMapped } from './VertexLitMaterial'
+import { setDistant, setMapped } from './VertexLitMaterial'
 import { createVillage, doors } from './village'
 import { VIEWS, type ValleyName } from './views'
 import { valleyFlashes } from './flashes'
@@ -154,7 +154,10 @@ export class Valley {
     atmosphere.add(this.#style)
     scene.add(this.#land, this.#village.object)
 
-    if (state.flashes) this.storm = valleyFlashes(scene, node)
+    if (state.flashes) {
+      this.storm = valleyFlashes(scene, node)
+      setDistant(this.storm.light)
+    }
     this.exposure = exposure
     // Coarse: the lake mirrors the picture itself where it can.
     const overlay = cloudEnvironment(node, { size: 128 })

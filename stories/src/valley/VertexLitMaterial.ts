@@ -6,6 +6,7 @@ import {
   If,
   mix,
   normalView,
+  normalViewGeometry,
   normalWorldGeometry,
   smoothstep,
   varying,
@@ -44,6 +45,14 @@ export function setMapped(lights: readonly Light[], map: SkyLightMap): void {
   for (const light of lights) _mapped.set(light, map)
 }
 
+/** Lights that are found at the vertices whole, with how surfaces face them. */
+const _distant = new WeakSet<Light>()
+
+/** Has the light of a distant lamp found at the vertices: it costs pixels nothing. Before the first frame. */
+export function setDistant(light: Light): void {
+  _distant.add(light)
+}
+
 /** Shadows of clouds without those that they are multiplied with. */
 const _ofCloudsAlone = new WeakMap<CloudShadowNode, CloudShadowNode>()
 
@@ -61,6 +70,9 @@ const atVertices = (colors: readonly ReceivedLight[], map?: SkyLightMap): Vec3 =
 
 /** Lambert's model whose light from all sides, and colours of directional lights, are of the vertices. */
 class VertexLightingModel extends PhongLightingModel {
+  /** Distant lights that `direct` was given. */
+  readonly #distant: ReceivedLight[] = []
+
   constructor() {
     super(false)
   }
@@ -72,6 +84,7 @@ class VertexLightingModel extends PhongLightingModel {
     context.reflectedLight.directDiffuse.assign(vec3(0))
     const [map] = lightsNode.getLightNodes(lit).flatMap(({ light }) => _mapped.get(light) ?? [])
     const others = received(lit, light => !_mapped.has(light))
+    others.push(...this.#distant.splice(0))
     // One colour for all of them: what vertices hand on costs each pixel.
     if (others.length > 0 || map !== undefined) {
       const light = atVertices(others, map)
@@ -83,6 +96,11 @@ class VertexLightingModel extends PhongLightingModel {
 
   override direct(input: LightingModelDirectInput, builder: NodeBuilder): void {
     const { light } = input.lightNode as unknown as ShadowedLightNode
+    if (_distant.has(light)) {
+      const facing = normalViewGeometry.dot(input.lightDirection as Vec3).max(0)
+      this.#distant.push([light, (input.lightColor as Vec3).mul(facing)])
+      return
+    }
     const { color, shadow } = this.#colorOf(input)
     const add = (lightColor: Vec3): void => super.direct({ ...input, lightColor }, builder)
     If(litOf(light).greaterThan(0), () => {
@@ -113,7 +131,7 @@ class VertexLightingModel extends PhongLightingModel {
 }
 
 /**
- * A matte material for dense meshes: light of sky and night, the colour that the air gives to sun and moon, and shadows of
+ * A matte material for dense meshes: light of sky, night and {@link setDistant distant lamps}, the colour that the air gives to sun and moon, and shadows of
  * clouds are found at the vertices, where they differ little from one to the next; what faces the sun and what lies in the
  * shadow of things, at each pixel.
  */

@@ -1,6 +1,7 @@
 import { skyVelocity } from '@welkin/atmosphere'
 import { cloudVelocity } from '@welkin/clouds'
-import type { PerspectiveCamera } from 'three'
+import { UnsignedByteType } from 'three'
+import type { PerspectiveCamera, TextureDataType } from 'three'
 import { bloom } from 'three/addons/tsl/display/BloomNode.js'
 import { dof } from 'three/addons/tsl/display/DepthOfFieldNode.js'
 import { fxaa } from 'three/addons/tsl/display/FXAANode.js'
@@ -99,7 +100,9 @@ export class ValleyFinish {
     const shown = this.#keep(new ToneTable()).shown(this.#local?.shown(picture) ?? picture)
     const smooth = { edges: smoothEdges, fxaa, smaa }[antialiasing as string]
     this.#pipeline.outputNode =
-      smooth === undefined ? shown : this.#keep(smooth(this.#drawn(shown, 'Shown')))
+      smooth === undefined
+        ? shown
+        : this.#keep(smooth(this.#drawn(shown, 'Shown', UnsignedByteType)))
     this.#pipeline.needsUpdate = true
   }
 
@@ -200,8 +203,8 @@ export class ValleyFinish {
   }
 
   /** A picture that effects read, not cleared before it is drawn, which saves time. */
-  #drawn(picture: Node, name: string): PictureNode {
-    return this.#keep(new PictureNode(name, vec4(picture as Node<'vec4'>)))
+  #drawn(picture: Node, name: string, type?: TextureDataType): PictureNode {
+    return this.#keep(new PictureNode(name, vec4(picture as Node<'vec4'>), type))
   }
 
   #keep<T extends object>(used: T): T {

@@ -27,7 +27,7 @@ export interface Weather {
   /** Extinction of the deck [1/m]; rain below it over that below cumulus, in [0, 1]. */
   readonly deckDensity: number
   readonly deckRain: number
-  /** Brightness of pictures over what is metered, at most 0 [EV]: storms are dark. */
+  /** Brightness of pictures over what is metered, at most 0 [EV]: storms are dark, and so is land before a sun among clouds. */
   readonly exposure: number
 }
 
@@ -50,7 +50,15 @@ const highest = { ...calm, base: 2300, deckBase: 3500, tall: 1100 }
 export const weathers = {
   fair: { cumulus: 0.38, deck: 0, cirrus: 0.35, turbidity: 2, mist: 0, ...high },
   clear: { cumulus: 0, deck: 0, cirrus: 0.08, turbidity: 1.5, mist: 0, ...high },
-  broken: { cumulus: 0.4, deck: 0.55, cirrus: 0, turbidity: 2.5, mist: 0, ...highest },
+  broken: {
+    cumulus: 0.4,
+    deck: 0.55,
+    cirrus: 0,
+    turbidity: 2.5,
+    mist: 0,
+    ...highest,
+    exposure: -0.2
+  },
   mist: { cumulus: 0, deck: 0, cirrus: 0, turbidity: 3, mist: 1, ...calm },
   overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...calm },
   shower: {

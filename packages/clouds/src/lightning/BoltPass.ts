@@ -10,6 +10,7 @@ import {
   Matrix3,
   Mesh,
   OneFactor,
+  RGFormat,
   Scene,
   Vector2,
   Vector3,
@@ -21,15 +22,16 @@ import type { CloudsNode } from '../march/CloudsNode'
 import { isDrawnBefore } from '../march/tsl/viewRay'
 import type { Float, LevelTexture, Mat3, Mat4, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { matrix3, matrix4, number, vector3, vector4 } from '../uniforms'
-import { CHANNEL_COLOR, type PlacedChannel } from './channel'
+import type { PlacedChannel } from './channel'
+import { channelColor } from './tsl/channelColor'
 
 /** Deviation of a channel's width in the picture [pixels]. Smaller: steps at its edges. */
 const WIDTH = 0.8
 /** Half width of what is drawn of it, and by how much it is drawn beyond the ends of a piece, where the next begins [pixels]. */
 const HALF_WIDTH = 3 * WIDTH
 const BEYOND = 1
-/** Greatest luminance that half floats keep. */
-const GREATEST = 6e4
+/** Greatest luminance over the channel's colour that half floats keep. */
+const GREATEST = 3e4
 /** Part of the distance over which clouds hide a channel. */
 const HIDING = 0.02
 /** Share of its light that clouds must let through: less is none, or it shines through opaque ones. */
@@ -76,6 +78,7 @@ function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
 /** A channel of lightning as thin bright lines, hidden by what was drawn and dimmed by clouds and air before it. */
 export class BoltPass {
   readonly #clouds: CloudsNode
+  /** Red and blue alone: to clear a texel costs more than to draw the few that a channel has. */
   readonly #target = tableTarget('Welkin.LightningChannel', 1, 1)
   readonly #texture: LevelTexture<Vec2>
   readonly #scene = new Scene()
@@ -96,6 +99,7 @@ export class BoltPass {
 
   constructor(clouds: CloudsNode) {
     this.#clouds = clouds
+    this.#target.texture.format = RGFormat
     this.#texture = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
     this.#material = this.#makeMaterial()
     this.#mesh = new Mesh(new BufferGeometry(), this.#material)
@@ -207,13 +211,7 @@ export class BoltPass {
         .mul(perMetre)
         .mul(brightness.x)
         .div(width)
-      return vec4(
-        air
-          .mul(vec3(...CHANNEL_COLOR))
-          .mul(luminance)
-          .min(GREATEST),
-        1
-      )
+      return vec4(air.xz.mul(luminance).min(GREATEST), 0, 1)
     })()
     return material
   }
@@ -223,7 +221,10 @@ export class BoltPass {
     const drawn = at.mul(this.#crop.xy).add(this.#crop.zw).toConst() as Vec2
     const light = vec3(0).toVar() as Variable<Vec3>
     If(drawn.clamp(0, 1).equal(drawn).all(), () => {
-      light.assign(this.#texture.sample(drawn).level(0).rgb)
+      const drawnLight = this.#texture.sample(drawn).level(0).xy.toConst()
+      If(drawnLight.x.greaterThan(0), () => {
+        light.assign(channelColor(drawnLight))
+      })
     })
     return light
   }

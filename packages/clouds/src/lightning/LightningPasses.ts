@@ -25,6 +25,7 @@ import { number, vector2 } from '../uniforms'
 import { BoltPass } from './BoltPass'
 import { CHANNEL_COLOR, STEM_POINTS, type PlacedChannel, type StormColumn } from './channel'
 import { StormDensity } from './StormDensity'
+import { channelColor } from './tsl/channelColor'
 import { meanInverseSquare } from './tsl/lineLight'
 
 /**
@@ -47,9 +48,6 @@ const TURNED_AWAY = 0.15
 
 /** Power for which half floats hold light: 1e-9 of it is left 2 km from the channel [lm]. */
 const STORED_POWER = 1e9
-
-/** Place of 550 nm between 630 and 440 nm in λ⁻⁴: exponent of blue in green. */
-const GREEN_SHARE = (550 ** -4 - 630 ** -4) / (440 ** -4 - 630 ** -4)
 
 /** Slope of the clouds that stands for none. */
 const STEEPEST = 1e6
@@ -203,10 +201,7 @@ export class LightningPasses {
         const place = here.add(texel.mul(vec2(x - 0.5, y - 0.5)))
         glow.addAssign(this.#glow.sample(place).level(0))
       }
-      // Green lies between red and blue as λ⁻⁴ does: their mean by geometry.
-      const green = glow.x.pow(1 - GREEN_SHARE).mul(glow.y.pow(GREEN_SHARE))
-      const cloud = vec3(glow.x, green, glow.y).div(glow.z.max(1e-3))
-      return vec4(cloud.mul(vec3(...CHANNEL_COLOR)), glow.w.mul(0.25))
+      return vec4(channelColor(glow.xy.div(glow.z.max(1e-3))), glow.w.mul(0.25))
     })()
   }
 

@@ -15,9 +15,6 @@ const HIGHLIGHT = 8
 /** Luminance that a tenth of the picture may exceed [–]: shown as 0.85 of white in sRGB by `photographicToneMapping`. */
 const LIGHT = 0.8
 
-/** Exponent that stands for the display's transfer function. */
-const DISPLAY_GAMMA = 2.2
-
 /** Settings of an automatic exposure that need no picture. */
 export interface ExposureSettings {
   /** Brightness over what is metered [EV]. */
@@ -54,8 +51,8 @@ const pictureLuminance = (luminance: number): number =>
 /**
  * Scale by which a metered luminance shows as middle grey, or darker by night.
  *
- * Beside black, such as space, what is seen is brighter: the mean of the whole picture on a display stays, up to where the
- * brightest tenth is at {@link LIGHT}. So a planet before space has white clouds.
+ * Beside black, such as space, what is seen is brighter: the mean light of the whole picture stays, up to where the brightest
+ * tenth is at {@link LIGHT}. So a planet before space has bright clouds, and its seas keep their blue.
  *
  * @param metered - Luminances, each > 0.
  * @returns `luminanceScale`, > 0 [1/(cd/m²)].
@@ -74,7 +71,7 @@ export function exposedScale(
   const excess = Math.max((light * even) / LIGHT, 1)
   // The room is that of day: nights stay night.
   const room = (LIGHT / MIDDLE_GREY) * (luminance / light)
-  const besideBlack = Math.max(Math.min(metered.seen ** -DISPLAY_GAMMA, room), 1)
+  const besideBlack = Math.max(Math.min(1 / metered.seen, room), 1)
   const brighter = Math.min(even * besideBlack, evenScale(least))
   const scale = brighter * excess ** -highlightPriority
   return 2 ** compensation * Math.min(scale, HIGHLIGHT / bright)

@@ -1,0 +1,89 @@
+import { CloudLightTable, cloudPreset, DropletLightTable } from '@welkin/clouds'
+import type { CloudLayers } from '@welkin/clouds'
+import { release, type HeadlessDevice } from '../headless/device'
+import { CloudBench, cloudViews, type CloudBenchOptions, type FrameTimes } from './CloudBench'
+import { shower } from './clouds'
+import { median } from './statistics'
+
+/** Times that pictures without and with bows are timed in turn: a GPU's clock drifts within a second. */
+const ROUNDS = 6
+
+/** Frames before any are timed, and after each change of pictures. */
+const WARM_UP = 40
+const SETTLING = 3
+
+/** GPU time of light that has the phase function of drops or droplets in place of smooth lobes [ms]. */
+export interface BowCost {
+  name: string
+  withoutMs: number
+  bowsMs: number
+  /** What each pass takes more, in the order in which they are drawn. */
+  passes: number[]
+}
+
+interface BowCase {
+  name: string
+  layers: () => CloudLayers
+  without: () => CloudBenchOptions
+  bows: () => CloudBenchOptions
+}
+
+/** Lobes of the same moments as droplets have, so that as much of the clouds is seen. */
+function lobesOfDroplets(): CloudLightTable {
+  const droplets = new DropletLightTable()
+  const { phase } = droplets
+  droplets.dispose()
+  return new CloudLightTable(phase)
+}
+
+const CASES: readonly BowCase[] = [
+  {
+    name: 'rainbows',
+    layers: shower,
+    without: () => ({ hasRainbows: false }),
+    bows: () => ({ hasRainbows: true })
+  },
+  {
+    name: 'cloudbow and glory',
+    layers: () => cloudPreset('fairWeather'),
+    without: () => ({ light: lobesOfDroplets() }),
+    bows: () => ({ light: new DropletLightTable() })
+  }
+]
+
+/** Times what bows add to clouds at `high`, seen from the ground. */
+export async function timeBows(
+  device: HeadlessDevice,
+  size: readonly [number, number],
+  frames: number
+): Promise<BowCost[]> {
+  const costs: BowCost[] = []
+  for (const { name, layers, without, bows } of CASES) {
+    const renderer = await device.renderer(...size)
+    const benches = [without(), bows()].map(options => {
+      const bench = new CloudBench(renderer, size, layers(), options)
+      bench.look(cloudViews[0])
+      bench.withClouds = true
+      return bench
+    })
+    const rounds: FrameTimes[][] = [[], []]
+    for (let round = 0; round < ROUNDS; round++) {
+      for (const [i, bench] of benches.entries()) {
+        rounds[i].push(await bench.time(frames, true, round === 0 ? WARM_UP : SETTLING))
+      }
+    }
+    const more = rounds[1].map(({ ms, passes }, i) => {
+      const before = rounds[0][i]
+      return [ms - before.ms, ...passes.map((pass, k) => pass - before.passes[k])]
+    })
+    const [bowsMs, ...passes] = more[0].map((_, k) => median(more.map(round => round[k])))
+    costs.push({ name, withoutMs: median(rounds[0].map(({ ms }) => ms)), bowsMs, passes })
+    for (const bench of benches) bench.dispose()
+    release(renderer)
+  }
+  return costs
+}
+
+/** A line of a report. */
+export const bowLine = ({ name, withoutMs, bowsMs, passes }: BowCost): string =>
+  `${name.padEnd(20)} ${bowsMs.toFixed(3)} ms   (without ${withoutMs.toFixed(3)} ms; passes ${passes.map(ms => ms.toFixed(3)).join(' ')})`
