@@ -5,12 +5,10 @@ import {
   type BufferGeometry,
   type InstancedBufferGeometry
 } from 'three'
-import { float } from 'three/tsl'
 import type { NodeMaterial, WebGPURenderer } from 'three/webgpu'
 import { randomSequence } from '../random'
 import { NEAR_LAYER, NEAR_REACH } from '../shafts/landShadow'
 import { broadleaf } from '../terrain/vegetation/broadleaf'
-import { createGrass } from '../terrain/vegetation/grass'
 import {
   createImpostors,
   drawPictures,
@@ -20,8 +18,8 @@ import {
 import { branchMaterial } from '../terrain/vegetation/NearTrees'
 import { plantGeometry, plantUniforms, type Planted } from '../terrain/vegetation/plantShader'
 import { branchedSpruce } from '../valley/treeShapes'
-import { GRASS } from './fieldPlan'
 import { fieldPlants, PLANT_KINDS, type Plant, type PlantKind } from './fieldPlants'
+import { createMeadowGrass } from './meadowGrass'
 
 /** Shapes of plants, and what their pictures show [m]. */
 const SHAPES: Record<PlantKind, { shape: () => BufferGeometry; frame?: Frame }> = {
@@ -35,24 +33,26 @@ const SHAPES: Record<PlantKind, { shape: () => BufferGeometry; frame?: Frame }> 
 /** Distances between which pictures of trees would go [m]. */
 const NEVER = [1e6, 2e6] as const
 
-/** Depth of roots below the ground, by which no plant hangs over a slope [m]. */
+/** Depth of the feet of trees and of tufts below the ground, by which none hangs over a slope [m]. */
 const ROOTS = 0.15
+const TUFT_ROOTS = 0.03
 
 /** Tufts per square metre of the meadow, and the distances up to which they stand so close, and at all [m]. */
-const TUFTS = 2
-const GRASS_CLOSE = 24
+const TUFTS = 7
+const GRASS_CLOSE = 26
 const GRASS_TO = 105
-
-/** Colours of the meadow's blades, linear sRGB. */
-const STRAW = [0.24, 0.205, 0.095] as const
 
 /** Height of the ground with its planet's curve [m]. */
 type Ground = (x: number, z: number) => number
 
 /** Plants that stand for good. */
-function planted(plants: readonly Plant[], ground: Ground): Planted & { count: number } {
+function planted(
+  plants: readonly Plant[],
+  ground: Ground,
+  roots = ROOTS
+): Planted & { count: number } {
   const random = randomSequence(3)
-  const places = plants.map(({ x, z, size }) => [x, ground(x, z) - ROOTS * size, z, size])
+  const places = plants.map(({ x, z, size }) => [x, ground(x, z) - roots * size, z, size])
   const looks = plants.map(({ tint }) => [6.3 * random(), random(), 0, tint])
   const [place, look] = [places, looks].map(
     values => new InstancedBufferAttribute(Float32Array.from(values.flat()), 4)
@@ -91,10 +91,10 @@ export class Plants extends Group {
     const uniforms = this.#uniforms
     const all = fieldPlants()
     for (const kind of PLANT_KINDS) {
-      const fallen = isSnowy && kind !== 'spruce' ? float(1) : null
+      const isBare = isSnowy && kind !== 'spruce'
       const { shape, frame } = SHAPES[kind]
       const geometry = shape()
-      const pictures = drawPictures(renderer, geometry, frame, fallen)
+      const pictures = drawPictures(renderer, geometry, frame, isBare)
       this.#shapes.push(geometry)
       this.#pictures.push(pictures)
       const isNear = ({ x, z }: Plant): boolean => Math.hypot(x, z) < NEAR_REACH
@@ -103,7 +103,7 @@ export class Plants extends Group {
         all[kind].filter(plant => !isNear(plant)),
         ground
       )
-      const trees = new Mesh(plantGeometry(geometry, near), branchMaterial(uniforms, fallen))
+      const trees = new Mesh(plantGeometry(geometry, near), branchMaterial(uniforms, isBare))
       trees.castShadow = trees.receiveShadow = true
       trees.frustumCulled = false
       trees.layers.enable(NEAR_LAYER)
@@ -112,8 +112,7 @@ export class Plants extends Group {
       woods.castShadow = false
       this.add(trees, woods)
     }
-    if (!isSnowy)
-      this.add(createGrass('meadow', planted(tufts(), ground), uniforms, [GRASS, STRAW]))
+    if (!isSnowy) this.add(createMeadowGrass(planted(tufts(), ground, TUFT_ROOTS), uniforms))
     const [first] = this.children as Mesh[]
     first.onBeforeRender = (_renderer, _scene, camera) => {
       // Not that of a shadow.

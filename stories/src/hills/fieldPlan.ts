@@ -18,8 +18,9 @@ export const BENDS = [
   [34, 530]
 ] as const
 
-/** Grass of meadows, and ground below trees, linear sRGB. */
+/** Grass of meadows, dry blades in it, and ground below trees, linear sRGB. */
 export const GRASS: Color = [0.105, 0.142, 0.042]
+export const STRAW: Color = [0.24, 0.205, 0.095]
 export const FOREST: Color = [0.026, 0.042, 0.019]
 
 /** What grows on fields, up to a chance: grass, young and ripe corn, hay, earth, and then woods. */
@@ -70,7 +71,7 @@ function cropOf(column: number, row: number): number {
 export const isWood = (column: number, row: number): boolean =>
   cropOf(column, row) === CROPS.length - 1
 
-/** Colours of fields over `BRIGHTEST`, by column and row. */
+/** Colours of fields over `BRIGHTEST`, by column and row, and 1 in alpha where they are sown. */
 export function createFieldTexture(): DataTexture {
   const bytes = new Uint8Array(4 * PLANNED ** 2)
   for (let i = 0; i < PLANNED ** 2; i++) {
@@ -78,9 +79,14 @@ export function createFieldTexture(): DataTexture {
       n < PLANNED / 2 ? n : n - PLANNED
     )
     const brightness = 0.85 + 0.3 * hashed(column, row, 4)
-    const [, color] = CROPS[cropOf(column, row)]
+    const crop = cropOf(column, row)
+    const [, color] = CROPS[crop]
+    const isSown = crop > 0 && crop < CROPS.length - 1
     const texel = color.map(part => (255 * part * brightness) / BRIGHTEST)
-    bytes.set([...texel.map(part => MathUtils.clamp(Math.round(part), 0, 255)), 255], 4 * i)
+    bytes.set(
+      [...texel.map(part => MathUtils.clamp(Math.round(part), 0, 255)), isSown ? 255 : 0],
+      4 * i
+    )
   }
   const result = new DataTexture(bytes, PLANNED, PLANNED)
   result.wrapS = result.wrapT = RepeatWrapping

@@ -29,10 +29,10 @@ export const PLANT_KINDS = Object.keys(SIZES) as PlantKind[]
 const COLUMNS = 50
 const ROWS = 23
 
-/** Length of a piece of hedge [m], bushes in it near by and farther off, and distances up to which there are so many [m]. */
+/** Length of a piece of hedge [m], bushes in it, and distances up to which there are so many [m]. */
 const PIECE = 9
-const BUSHES = [4, 3] as const
-const HEDGES_TO = [380, 1500] as const
+const BUSHES = [8, 4, 3] as const
+const HEDGES_TO = [120, 380, 1500] as const
 
 /** Distances from the origin between which trees stand, and beyond which there are fewer in hedges [m]. */
 const TREES_FROM = 55
@@ -57,7 +57,7 @@ export function fieldPlants(): Record<PlantKind, Plant[]> {
   const add = (kind: PlantKind, x: number, z: number, age: number): void => {
     const [least, most] = SIZES[kind]
     const size = MathUtils.lerp(least, most, age)
-    plants[kind].push({ x, z, size, tint: 1 + 0.7 * random() })
+    plants[kind].push({ x, z, size, tint: 1.3 + 0.9 * random() })
   }
 
   /** A piece of the edge of a field, from one place in the fields to another. */
@@ -68,20 +68,19 @@ export function fieldPlants(): Record<PlantKind, Plant[]> {
   ): void => {
     const [x, z] = placeInFields(...from)
     const distance = Math.hypot(x, z)
-    if (distance > TREES_TO) return
     const [endX, endZ] = placeInFields(...to)
     const isOpen = edge > HEDGED || valueNoise(x / 30, z / 30, 60) < 0.14
-    const [near, far] = HEDGES_TO
-    const count = isOpen || distance > far ? 0 : BUSHES[distance < near ? 0 : 1]
+    const ring = HEDGES_TO.findIndex(reach => distance < reach)
+    const count = isOpen || ring < 0 ? 0 : BUSHES[ring]
     for (let i = 0; i < count; i++) {
       const along = (i + random()) / count
       const aside = 1.1 * (random() - 0.5)
-      const high = (0.35 + 0.9 * edge) * (0.5 + 0.5 * random())
+      const high = 0.3 + 0.5 * edge + 0.7 * (random() - 0.4)
       add(
         'bush',
         MathUtils.lerp(x, endX, along) + aside,
         MathUtils.lerp(z, endZ, along) - aside,
-        high + (distance < near ? 0 : 0.3)
+        high + 0.2 * ring
       )
     }
     // They stand in groups, also where there is no hedge.
@@ -95,8 +94,6 @@ export function fieldPlants(): Record<PlantKind, Plant[]> {
 
   /** Trees of a field that is a wood: close along its edges, wide apart within, where one sees their tops alone. */
   const addWood = (column: number, row: number, start: number): void => {
-    const [middleX, middleZ] = placeInFields(column + 0.5, start + 0.5)
-    if (Math.hypot(middleX, middleZ) > TREES_TO) return
     const isDark = hashed(column, row, 72) < 0.35
     const addTree = (across: number, along: number): void => {
       const [x, z] = placeInFields(column + across, start + along)
@@ -122,6 +119,8 @@ export function fieldPlants(): Record<PlantKind, Plant[]> {
     for (let i = -ROWS; i <= ROWS; i++) {
       const row = i + Math.round(SHIFT * column)
       const start = row - SHIFT * column
+      const [middleX, middleZ] = placeInFields(column + 0.5, start + 0.5)
+      if (Math.hypot(middleX, middleZ) > TREES_TO) continue
       if (isWood(column, row)) addWood(column, row, start)
       const [side, end] = [hashed(column, row, 70), hashed(column, row, 71)]
       for (let j = 0; j < pieces[1]; j++) {

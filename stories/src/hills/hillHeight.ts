@@ -14,6 +14,9 @@ const FINER = 2.1
 const LOWER = 0.47
 const OCTAVES = 7
 
+/** Height of the longest ridges [m]. */
+const HIGHEST = 640
+
 /** Quads that a period needs at least. Fewer: crests are teeth, which comb light shafts of a low sun. */
 const PERIOD_QUADS = 4
 
@@ -23,17 +26,33 @@ const ROUND = 1.2
 const fade = (t: number): number => t * t * t * (t * (6 * t - 15) + 10)
 const clamp = (t: number): number => Math.min(Math.max(t, 0), 1)
 
+/** Directions of gradients, x and y in turn. */
+const DIRECTIONS = 256
+const gradients = Float64Array.from({ length: 2 * DIRECTIONS }, (_, i) => {
+  const angle = (2 * Math.PI * (i >> 1)) / DIRECTIONS
+  return i % 2 === 0 ? Math.cos(angle) : Math.sin(angle)
+})
+
+/** Height at a way (x, y) from a corner of the lattice, along its gradient. */
+function fromCorner(i: number, j: number, seed: number, x: number, y: number): number {
+  const n = 2 * Math.floor(DIRECTIONS * hashed(i, j, seed))
+  return gradients[n] * x + gradients[n + 1] * y
+}
+
 /** Gradient noise (Perlin 2002) with unit cells, about ±0.7: unlike noise of values it has no flat steps along its lattice. */
 function gradientNoise(x: number, y: number, seed: number): number {
-  const [i, j] = [Math.floor(x), Math.floor(y)]
-  const [s, t] = [x - i, y - j]
-  const corner = (a: number, b: number): number => {
-    const angle = 2 * Math.PI * hashed(i + a, j + b, seed)
-    return Math.cos(angle) * (s - a) + Math.sin(angle) * (t - b)
-  }
-  const [u, v] = [fade(s), fade(t)]
-  const near = corner(0, 0) * (1 - u) + corner(1, 0) * u
-  return near * (1 - v) + (corner(0, 1) * (1 - u) + corner(1, 1) * u) * v
+  const i = Math.floor(x)
+  const j = Math.floor(y)
+  const s = x - i
+  const t = y - j
+  const u = fade(s)
+  const v = fade(t)
+  const a = fromCorner(i, j, seed, s, t)
+  const b = fromCorner(i + 1, j, seed, s - 1, t)
+  const c = fromCorner(i, j + 1, seed, s, t - 1)
+  const d = fromCorner(i + 1, j + 1, seed, s - 1, t - 1)
+  const near = a + u * (b - a)
+  return near + v * (c + u * (d - c) - near)
 }
 
 /** Length of the grid's quads away from the middle, at a distance from it [m]. */
@@ -73,5 +92,5 @@ export function hillHeight(x: number, z: number): number {
     high *= LOWER
     period /= FINER
   }
-  return low + 900 * rise * sum
+  return low + HIGHEST * rise * sum
 }

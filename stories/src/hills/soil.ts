@@ -3,6 +3,7 @@ import {
   floor,
   fract,
   fwidth,
+  int,
   mix,
   normalWorldGeometry,
   positionWorld,
@@ -23,12 +24,12 @@ import {
   createFieldTexture,
   FIELD,
   FOREST,
-  GRASS,
   MEAN,
   ORIGIN,
   PLANNED,
   SHIFT,
   SIN,
+  STRAW,
   type Color
 } from './fieldPlan'
 
@@ -61,8 +62,7 @@ export const redDust: Soil = { low: [0.3, 0.13, 0.06], high: [0.22, 0.11, 0.06],
 const LEAFY: Color = [0.043, 0.064, 0.022]
 const HEATH: Color = [0.15, 0.132, 0.07]
 const VERGE: Color = [0.05, 0.068, 0.024]
-/** Dry blades among the green ones, and the shade between tufts. */
-const STRAW: Color = [0.24, 0.205, 0.095]
+/** Shade between tufts. */
 const BETWEEN: Color = [0.034, 0.04, 0.018]
 
 /** Half width of the ground below hedges [m], and distances between which it is all that is left of them. */
@@ -72,8 +72,9 @@ const HEDGES_GO = [1100, 1500] as const
 /** Swaths per metre in which fields are mown or sown. */
 const SWATHS = 1 / 3.1
 
-/** Noise of the relief that is finer than the grid: its period, the way between its samples [m], and its height [m]. */
+/** Noise of the relief that is finer than the grid, and of drifts of snow: period, way between samples, and height [m]. */
 const RELIEF = { period: 2300, step: 26, height: 52 }
+const DRIFTS = { period: 29, step: 0.8, height: 0.5 }
 
 type Noise = (period: number, place?: Node<'vec2'>) => Node<'float'>
 
@@ -95,7 +96,8 @@ function fields(place: Node<'vec2'>, plan: DataTexture): Node<'vec3'> {
   const column = floor(across).toConst()
   const along = even.add(column.mul(SHIFT)).toConst()
   const at = vec2(column, floor(along)).add(0.5).div(PLANNED)
-  const crop = texture(plan, at).level(0).rgb.mul(BRIGHTEST)
+  const field = texture(plan, at).level(int(0)).toConst()
+  const crop = field.rgb.mul(BRIGHTEST)
   const pixel = vec2(fwidth(across).mul(FIELD[0]), fwidth(even).mul(FIELD[1])).toConst()
   const inField = vec2(fract(across), fract(along))
   const edge = inField
@@ -109,11 +111,9 @@ function fields(place: Node<'vec2'>, plan: DataTexture): Node<'vec3'> {
     .reciprocal()
   const verges = side.mul(thin).toConst()
   const seen = smoothstep(vec2(...FIELD), vec2(...FIELD).mul(0.25), pixel).toConst()
-  // Grass has none: its fields are pastures.
-  const isSown = smoothstep(0.002, 0.02, crop.sub(vec3(...GRASS)).length())
   const swaths = sin(u.mul(2 * Math.PI * SWATHS))
     .mul(smoothstep(0.4, 0.15, pixel.x.mul(SWATHS)))
-    .mul(isSown)
+    .mul(field.a)
     .mul(0.06)
   const mixed = mix(vec3(...MEAN), crop.mul(swaths.add(1)), seen.x.mul(seen.y))
   const bare = smoothstep(HEDGES_GO[0], HEDGES_GO[1], place.length()).mul(0.45).add(0.4)
@@ -127,21 +127,21 @@ function grown(color: Node<'vec3'>, noise: Noise): Node<'vec3'> {
   const tufts = noise(5.3).add(noise(13.9)).mul(0.6).add(blades.mul(0.5)).toConst()
   const dry = smoothstep(0.3, 1, blades.sub(noise(23)))
   const low = smoothstep(-0.4, -1.2, tufts)
-  const lit = color.mul(blades.mul(0.6).add(tufts.mul(0.13)).add(1).max(0.3))
+  const lit = color.mul(blades.mul(0.4).add(tufts.mul(0.12)).add(1).max(0.3))
   return mix(mix(lit, vec3(...STRAW), dry.mul(0.25)), vec3(...BETWEEN), low.mul(0.3))
 }
 
-/** Normal of the ground in world space, with relief that is finer than its grid where it rises. */
-function relief(place: Node<'vec2'>, height: Node<'float'>, noise: Noise): Node<'vec3'> {
-  const { period, step, height: high } = RELIEF
-  const here = noise(period, place)
-  const slope = vec2(
-    noise(period, place.add(vec2(step, 0))),
-    noise(period, place.add(vec2(0, step)))
-  )
-    .sub(here)
-    .mul(smoothstep(20, 160, height).mul(high / step))
-  return normalWorldGeometry.sub(vec3(slope.x, 0, slope.y)).normalize()
+/** Slope of a relief of noise. */
+function slopeOf(
+  place: Node<'vec2'>,
+  { period, step, height }: typeof RELIEF,
+  noise: Noise
+): Node<'vec2'> {
+  const east = noise(period, place.add(vec2(step, 0)))
+  const south = noise(period, place.add(vec2(0, step)))
+  return vec2(east, south)
+    .sub(noise(period, place))
+    .mul(height / step)
 }
 
 /**
@@ -167,7 +167,12 @@ export function soilMaterial(soil: Soil): MeshStandardNodeMaterial {
   const ground = attribute<'float'>('height', 'float')
   const height = ground.add(broad.mul(90)).toVar()
   const lit = fine.mul(variation).mul(0.8).add(1).max(0.3)
-  const normal = relief(place, ground, noise).toVar()
+  const rough = slopeOf(place, RELIEF, noise).mul(smoothstep(20, 160, ground))
+  const slope = isSnowy ? rough.add(slopeOf(place, DRIFTS, noise)) : rough
+  const normal = normalWorldGeometry
+    .sub(vec3(slope.x, 0, slope.y))
+    .normalize()
+    .toVar()
   material.normalNode = transformNormalToView(normal)
   const low = vec3(...(isSnowy ? meadow.low : soil.low))
   let color: Node<'vec3'> = low

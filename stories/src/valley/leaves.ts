@@ -44,6 +44,9 @@ const TWIG_COLOR = [2.3, 1.35, 4] as const
 const TWIG_EDGE = 0.3
 const TWIG_NOISE = [0.03, 0.5] as const
 
+/** Coverage of twigs in means of a picture from which they are solid. */
+const TWIG_MEAN = 0.11
+
 /** Part of a bare crown of the distance that one looks through. */
 const BARE = 0.55
 
@@ -187,6 +190,17 @@ export function setFoliage(material: NodeMaterial, fallen: Node<'float'> | null 
   material.maskNode = isBare.select(twigs.and(isShade.not()), hasLeaf.or(isShade)).or(isBark)
   const leafy = autumnColor(fallen).mul(leaf.r.mul(1.25).add(0.22))
   material.colorNode = isSolid.select(vec3(1), leafy)
+}
+
+/** Gives a material of trees that have shed all leaves their twigs, as {@link setFoliage} does, alike from near and far. */
+export function setTwigs(material: NodeMaterial): void {
+  const picture = createLeafTexture()
+  material.addEventListener('dispose', () => picture.dispose())
+  const color = attribute<'vec3'>('color', 'vec3')
+  const isBark = color.r.greaterThan(color.g)
+  material.maskNode = texture(picture, uv()).b.greaterThan(TWIG_MEAN).or(isBark)
+  material.normalNode = normalViewGeometry
+  material.colorNode = isBark.select(vec3(1), autumnColor(float(1)).mul(0.7))
 }
 
 /** Gives a material of trees of the distance bare crowns that one looks through, where leaves have fallen. */

@@ -15,7 +15,7 @@ export interface PagePlaces {
   /** True where places are interpolated: they are in the arrays once they have been found. */
   readonly isSmooth: boolean
   /** Finds all of them, or one by its number. */
-  find(place?: number): void
+  readonly find: (place?: number) => void
   /** Bounds of the coordinates. */
   readonly extent: Extent
 }

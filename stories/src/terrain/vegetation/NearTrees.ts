@@ -7,9 +7,9 @@ import {
   type Vector3
 } from 'three'
 import { attribute, positionGeometry, transformNormalToView, varying } from 'three/tsl'
-import { setFoliage } from '../../valley/leaves'
+import { setFoliage, setTwigs } from '../../valley/leaves'
 import type { PlantCells } from './PlantCells'
-import { PlantMaterial, plantNodes, type Float, type PlantUniforms, type Vec3 } from './plantShader'
+import { PlantMaterial, plantNodes, type PlantUniforms, type Vec3 } from './plantShader'
 
 /** Most trees with branches. */
 const MOST = 600
@@ -17,14 +17,12 @@ const MOST = 600
 /**
  * Material of trees with branches.
  *
- * @param fallen - As of `setFoliage`.
+ * @param isBare - Leaves have fallen.
  */
-export function branchMaterial(
-  uniforms: PlantUniforms,
-  fallen: Float | null = null
-): PlantMaterial {
+export function branchMaterial(uniforms: PlantUniforms, isBare = false): PlantMaterial {
   const material = new PlantMaterial({ side: DoubleSide })
-  setFoliage(material, fallen)
+  if (isBare) setTwigs(material)
+  else setFoliage(material)
   const { foot, size, tint, turned } = plantNodes(uniforms)
   material.positionNode = foot.add(turned((positionGeometry as unknown as Vec3).mul(size)))
   const normal = turned(attribute<'vec3'>('normal', 'vec3')).normalize()

@@ -10,24 +10,20 @@ import {
   vec3
 } from 'three/tsl'
 import { randomSequence } from '../../random'
+import type { PlantCells } from './PlantCells'
 import {
   plantGeometry,
   PlantMaterial,
   plantNodes,
   thinned,
   type Float,
-  type Planted,
   type PlantUniforms,
   type Vec3
 } from './plantShader'
 
-type Color = readonly [number, number, number]
-
 /** Colours of blades, linear sRGB: near those of the ground's grass, and of its straw. */
-const BLADES: readonly [green: Color, straw: Color] = [
-  [0.05, 0.098, 0.021],
-  [0.225, 0.19, 0.085]
-]
+const GREEN = [0.05, 0.098, 0.021] as const
+const STRAW = [0.225, 0.19, 0.085] as const
 
 /** Half of a blade's width at its root [m], and that of a pixel at a distance of 1 m: a blade is no narrower. */
 const HALF_WIDTH = 0.004
@@ -86,7 +82,7 @@ function tuft({ blades, radius, length, joints }: TuftOptions): BufferGeometry {
 }
 
 /**
- * Tufts near the viewer, the coarser ones beyond, and those of a meadow: distances at which they come and go, those over which they thin out [m], and factor on
+ * Tufts near the viewer, and the coarser ones beyond: distances at which they come and go, those over which they thin out [m], and factor on
  * the least width of their blades.
  */
 export const GRASSES = {
@@ -94,47 +90,30 @@ export const GRASSES = {
     tuft: { blades: 15, radius: 0.17, length: [0.13, 0.42], joints: 2 },
     reach: [-2, -1, 13, 20],
     thinning: { from: 6, to: 20, least: 0.5 },
-    wide: 1.3,
-    light: [0.35, 1.75]
+    wide: 1.3
   },
   far: {
     tuft: { blades: 13, radius: 0.45, length: [0.16, 0.4], joints: 1 },
     reach: [11, 18, 55, 84],
     thinning: { from: 16, to: 70, least: 0.3 },
-    wide: 1.7,
-    light: [0.35, 1.75]
-  },
-  /** Alone, seen from some metres up. */
-  meadow: {
-    tuft: { blades: 11, radius: 0.5, length: [0.1, 0.34], joints: 1 },
-    reach: [-2, -1, 50, 105],
-    thinning: { from: 1e4, to: 2e4, least: 1 },
-    wide: 1.5,
-    light: [0.6, 1.35]
+    wide: 1.7
   }
 } as const
 
 /**
  * Grass: blades as wide as a pixel at least, so that they do not shimmer, with the ground's colours.
  *
- * @param blades - Colours of fresh blades and of dry ones.
+ * @param kind - Near the viewer, or beyond.
  */
 export function createGrass(
   kind: keyof typeof GRASSES,
-  plants: Planted,
-  uniforms: PlantUniforms,
-  blades = BLADES
+  cells: PlantCells,
+  uniforms: PlantUniforms
 ): Mesh {
-  const {
-    tuft: options,
-    reach,
-    thinning,
-    wide: wider,
-    light: [dark, bright]
-  } = GRASSES[kind]
+  const { tuft: options, reach, thinning, wide: wider } = GRASSES[kind]
   const material = new PlantMaterial({ side: DoubleSide })
   // Within some metres there is no haze, but for thick mist.
-  material.fog = kind !== 'near'
+  material.fog = kind === 'far'
   const nodes = plantNodes(uniforms)
   const { foot, size, random, tint, distance, turned } = nodes
   const tip = attribute<'float'>('tip', 'float') as unknown as Float
@@ -162,20 +141,20 @@ export function createGrass(
     .add(outwards.mul(random.mul(1.2).add(0.5)))
     .normalize()
   material.normalNode = varying(transformNormalToView(normal as never) as unknown as Vec3)
-  const [green, straw] = blades.map(([r, g, b]) => vec3(r, g, b))
+  const [green, straw] = [GREEN, STRAW].map(([r, g, b]) => vec3(r, g, b))
   const dry = tint.add(random.sub(0.5).mul(0.3)).clamp(0, 1)
   // Fresh and bluish tufts beside yellowish ones.
   const fresh = mix(vec3(0.72, 0.86, 1.25), vec3(1.35, 1.08, 0.6), random)
   // Where they end they are as bright as the ground.
-  const form = kind !== 'near' ? smoothstep(leaves * 0.4, gone, distance).oneMinus() : 1
-  const light = mix(1, mix(dark, bright, tip).mul(random.mul(0.5).add(0.75)), form)
+  const form = kind === 'far' ? smoothstep(leaves * 0.4, gone, distance).oneMinus() : 1
+  const light = mix(1, mix(0.35, 1.75, tip).mul(random.mul(0.5).add(0.75)), form)
   // Long blades have seeds, which are straw.
   const seeds = smoothstep(1.45, 1.9, size)
     .mul(smoothstep(0.62, 0.8, tip))
     .mul(0.8)
   const blade = mix(mix(green.mul(fresh), straw, dry), straw, seeds)
   material.colorNode = varying(blade.mul(light)) as unknown as Vec3
-  const mesh = new Mesh(plantGeometry(tuft(options), plants), material)
+  const mesh = new Mesh(plantGeometry(tuft(options), cells), material)
   mesh.receiveShadow = true
   mesh.frustumCulled = false
   return mesh

@@ -28,7 +28,7 @@ import {
   vec3
 } from 'three/tsl'
 import { MeshBasicNodeMaterial, type Node, type WebGPURenderer } from 'three/webgpu'
-import { setFoliage } from '../../valley/leaves'
+import { setFoliage, setTwigs } from '../../valley/leaves'
 import {
   plantGeometry,
   PlantMaterial,
@@ -67,13 +67,13 @@ export interface TreePictures {
 /**
  * Draws a tree from all sides.
  *
- * @param fallen - As of `setFoliage`.
+ * @param isBare - Leaves have fallen.
  */
 export function drawPictures(
   renderer: WebGPURenderer,
   geometry: BufferGeometry,
   frame = FRAME,
-  fallen: Float | null = null
+  isBare = false
 ): TreePictures {
   const scene = new Scene()
   const { width, height } = frame
@@ -86,10 +86,11 @@ export function drawPictures(
       magFilter: LinearFilter
     })
   const pictures = { color: target(), normal: target(), frame }
+  const setLeaves = isBare ? setTwigs : setFoliage
   const colors = new MeshBasicNodeMaterial({ vertexColors: true, side: DoubleSide })
-  setFoliage(colors, fallen)
+  setLeaves(colors)
   const normals = new MeshBasicNodeMaterial({ side: DoubleSide })
-  setFoliage(normals, fallen)
+  setLeaves(normals)
   normals.colorNode = attribute<'vec3'>('normal', 'vec3').normalize().mul(0.5).add(0.5)
   const mesh = new Mesh(geometry)
   mesh.frustumCulled = false
