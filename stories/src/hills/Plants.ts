@@ -38,7 +38,7 @@ const ROOTS = 0.15
 const TUFT_ROOTS = 0.03
 
 /** Tufts per square metre of the meadow, and the distances up to which they stand so close, and at all [m]. */
-const TUFTS = 7
+const TUFTS = 10
 const GRASS_CLOSE = 26
 const GRASS_TO = 105
 
@@ -46,11 +46,7 @@ const GRASS_TO = 105
 type Ground = (x: number, z: number) => number
 
 /** Plants that stand for good. */
-function planted(
-  plants: readonly Plant[],
-  ground: Ground,
-  roots = ROOTS
-): Planted & { count: number } {
+function planted(plants: readonly Plant[], ground: Ground, roots = ROOTS): Planted {
   const random = randomSequence(3)
   const places = plants.map(({ x, z, size }) => [x, ground(x, z) - roots * size, z, size])
   const looks = plants.map(({ tint }) => [6.3 * random(), random(), 0, tint])
@@ -58,7 +54,6 @@ function planted(
     values => new InstancedBufferAttribute(Float32Array.from(values.flat()), 4)
   )
   return {
-    count: plants.length,
     add(geometry: InstancedBufferGeometry): void {
       geometry.setAttribute('plantPlace', place).setAttribute('plantLook', look)
       geometry.instanceCount = plants.length
@@ -75,7 +70,7 @@ function tufts(): Plant[] {
     const angle = 2 * Math.PI * random()
     const distance = GRASS_CLOSE * (i < close ? Math.sqrt(random()) : Math.exp(rings * random()))
     const [x, z] = [distance * Math.cos(angle), distance * Math.sin(angle)]
-    return { x, z, size: 0.7 + 0.6 * random(), tint: 0.25 * random() - 0.05 }
+    return { x, z, size: 0.7 + 0.6 * random(), tint: 0.16 * random() ** 2 }
   })
 }
 

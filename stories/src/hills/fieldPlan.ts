@@ -19,7 +19,7 @@ export const BENDS = [
 ] as const
 
 /** Grass of meadows, dry blades in it, and ground below trees, linear sRGB. */
-export const GRASS: Color = [0.105, 0.142, 0.042]
+export const GRASS: Color = [0.13, 0.172, 0.051]
 export const STRAW: Color = [0.24, 0.205, 0.095]
 export const FOREST: Color = [0.026, 0.042, 0.019]
 

@@ -29,7 +29,7 @@ const HEIGHT = 64
 const BLADES = 30
 
 /** Width and height of a tuft [m]. */
-const TUFT = [0.75, 0.3] as const
+const TUFT = [0.8, 0.24] as const
 
 /** Distances between which tufts go: beyond, the ground alone is as fine as pixels [m]. */
 const GOES = [45, 105] as const
@@ -79,8 +79,8 @@ export function createMeadowGrass(tufts: Planted, uniforms: PlantUniforms): Mesh
   const solid = mix(SOLID[0], SOLID[1], smoothstep(15, 60, varying(distance)))
   material.maskNode = blades.g.greaterThan(solid)
   // Roots are in the shade of other blades; where tufts end they are as bright as the ground.
-  const light = mix(0.45, 1.25, uv().y.mul(1.4).min(1)).mul(blades.r.mul(0.9).add(0.55))
-  const fresh = mix(vec3(0.85, 0.95, 1), vec3(1.2, 1.06, 0.75), random)
+  const light = mix(0.55, 1.2, uv().y.mul(1.4).min(1)).mul(blades.r.mul(0.8).add(0.6))
+  const fresh = mix(vec3(0.88, 0.96, 0.95), vec3(1.08, 1.03, 0.9), random)
   const color = mix(vec3(...GRASS).mul(fresh), vec3(...STRAW), tint)
   material.colorNode = (varying(color) as unknown as Vec3).mul(mix(1, light, varying(shown)))
   const mesh = new Mesh(

@@ -44,7 +44,7 @@ export interface Soil {
 }
 
 export const meadow: Soil = {
-  low: [0.1, 0.125, 0.042],
+  low: [0.122, 0.148, 0.05],
   high: [0.2, 0.17, 0.125],
   variation: 0.17,
   isFarmed: true
@@ -74,7 +74,7 @@ const SWATHS = 1 / 3.1
 
 /** Noise of the relief that is finer than the grid, and of drifts of snow: period, way between samples, and height [m]. */
 const RELIEF = { period: 2300, step: 26, height: 52 }
-const DRIFTS = { period: 29, step: 0.8, height: 0.5 }
+const DRIFTS = { period: 29, step: 0.8, height: 0.22 }
 
 type Noise = (period: number, place?: Node<'vec2'>) => Node<'float'>
 

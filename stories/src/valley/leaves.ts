@@ -45,7 +45,7 @@ const TWIG_EDGE = 0.3
 const TWIG_NOISE = [0.03, 0.5] as const
 
 /** Coverage of twigs in means of a picture from which they are solid. */
-const TWIG_MEAN = 0.11
+const TWIG_MEAN = 0.19
 
 /** Part of a bare crown of the distance that one looks through. */
 const BARE = 0.55

@@ -216,7 +216,6 @@ export class GridHeights implements PageSource {
     if (!this.#fill(heights, request, places)) return heights.fill(this.#outside)
     const radius = this.#isFlat ? 1 : this.#radii.x
     return appendSky(heights, request, i => {
-      places.find(i)
       const [x, y] = [places.x[i], places.y[i]]
       const parallel = this.#isFlat ? 1 : Math.max(Math.cos(this.#north - y * this.#stepY), 1e-3)
       const across = 1 / (this.#stepX * radius * parallel)
@@ -253,7 +252,6 @@ export class GridHeights implements PageSource {
     const inside = this.#insideAt[level]
     const insideAt = (i: number): number => inside(places.x[i], places.y[i])
     if (fillSmooth(places, side, [shrink, shrink], insideAt, heights)) return true
-    places.find()
     const corners = inside(extent.west, extent.north) + inside(extent.east, extent.south)
     if (!Number.isNaN(corners)) {
       fillInside(values, width, places, { scale: [shrink, shrink], first: [0, 0] }, heights)

@@ -187,11 +187,8 @@ export class HeightTiles implements PageSource {
     const z = this.#store.levelOf(spacing)
     const held = new Map<number, HeightTile>()
     const find: FindTile = key => held.get(key) ?? this.#store.peek(key)
-    const placesOf = (): PagePlaces => {
-      const places = pagePlaces(request, (at, target) => this.#project(at, target), 1)
-      places.find()
-      return places
-    }
+    const placesOf = (): PagePlaces =>
+      pagePlaces(request, (at, target) => this.#project(at, target), 1)
     const first = placesOf()
     const keys = this.#keysOf(z, first, side)
     const fillHeights = (places: PagePlaces, heights: Float32Array): Float32Array => {

@@ -128,9 +128,7 @@ export class ImageTiles extends PageImages {
       target.x = mercatorX(place.longitude)
       target.y = rowOf(place.latitude)
     }
-    const places = pagePlaces(request, project, 1)
-    places.find()
-    return places
+    return pagePlaces(request, project, 1)
   }
 
   #keysOf(z: number, { x, y }: PagePlaces): Set<number> {

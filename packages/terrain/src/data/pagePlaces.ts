@@ -12,10 +12,8 @@ const TOLERANCE_OF_STEP = 1e-4
 export interface PagePlaces {
   readonly x: Float64Array
   readonly y: Float64Array
-  /** True where places are interpolated: they are in the arrays once they have been found. */
+  /** True where places are interpolated. */
   readonly isSmooth: boolean
-  /** Finds all of them, or one by its number. */
-  readonly find: (place?: number) => void
   /** Bounds of the coordinates. */
   readonly extent: Extent
 }
@@ -35,7 +33,7 @@ let x = new Float64Array(0)
 let y = new Float64Array(0)
 
 /**
- * Places of a page on a map, in arrays that the next call fills anew, once they are found: cubic interpolation of exact ones, to 1 mm or a ten-thousandth
+ * Places of a page on a map, in arrays that the next call fills anew: cubic interpolation of exact ones, to 1 mm or a ten-thousandth
  * of its steps, where the page is not too large for it, or too near a pole.
  *
  * With h the distance of exact places and ρ that of the page to the planet's axis, the error is at most h⁴ / 2ρ³: the fourth derivative of longitude is
@@ -73,12 +71,10 @@ export function pagePlaces(
       }
     }
     if (isWhole) {
-      const find = (place?: number): void => {
-        interpolate(nodesX, weights, x, place)
-        interpolate(nodesY, weights, y, place)
-      }
+      interpolate(nodesX, weights, x)
+      interpolate(nodesY, weights, y)
       // Between exact places others are less than a step beyond them.
-      return { x, y, isSmooth: true, find, extent: extentOf(nodesX, nodesY, 1 / (side - 1)) }
+      return { x, y, isSmooth: true, extent: extentOf(nodesX, nodesY, 1 / (side - 1)) }
     }
   }
   for (let n = 0; n < x.length; n++) {
@@ -87,7 +83,7 @@ export function pagePlaces(
     x[n] = at.x
     y[n] = at.y
   }
-  return { x, y, isSmooth: false, find: () => undefined, extent: extentOf(x, y, 0) }
+  return { x, y, isSmooth: false, extent: extentOf(x, y, 0) }
 }
 
 /** @param more - Part of their range by which they are widened. */
@@ -115,14 +111,13 @@ const FINENESS = 12
  * @returns False if there is one, and nothing has been filled.
  */
 export function fillSmooth(
-  { x, y, isSmooth, find }: PagePlaces,
+  { x, y, isSmooth }: PagePlaces,
   side: number,
   [width, height]: readonly [number, number],
   heightAt: (place: number) => number,
   heights: Float32Array
 ): boolean {
   const middle = (side * side) >> 1
-  for (const next of [0, 1, side]) find(middle + next)
   const pixels = (next: number): number =>
     Math.max(
       Math.abs(x[middle + next] - x[middle]) * width,
@@ -136,9 +131,7 @@ export function fillSmooth(
   let n = 0
   for (const row of nodes) {
     for (const column of nodes) {
-      const place = row * side + column
-      find(place)
-      const value = heightAt(place)
+      const value = heightAt(row * side + column)
       if (Number.isNaN(value)) return false
       values[n++] = value
     }
@@ -184,26 +177,13 @@ function makeWeights(side: number, stride: number): Weights {
   return { side, nodes, first, weights }
 }
 
-/** Fills a square, or one place of it, by the nodes of a coarser one: along their rows, then between these. */
+/** Fills a square by the nodes of a coarser one: along their rows, then between these. */
 function interpolate(
   values: Float64Array,
   { side, nodes, first, weights }: Weights,
-  target: Float64Array | Float32Array,
-  place?: number
+  target: Float64Array | Float32Array
 ): void {
   const count = nodes.length
-  if (place !== undefined) {
-    const row = Math.floor(place / side)
-    const column = place - row * side
-    let sum = 0
-    for (let n = 0; n < 16; n++) {
-      const [i, j] = [n & 3, n >> 2]
-      const value = values[(first[row] + j) * count + first[column] + i]
-      sum += weights[4 * row + j] * weights[4 * column + i] * value
-    }
-    target[place] = sum
-    return
-  }
   const rows = new Float64Array(count * side)
   for (let row = 0, n = 0; row < count; row++) {
     for (let i = 0, w = 0; i < side; i++, w += 4) {

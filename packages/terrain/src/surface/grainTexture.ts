@@ -77,23 +77,15 @@ function addStone(heights: Float32Array, radius: number, random: () => number): 
   const reach = 1.2 * radius
   for (let j = Math.floor(y - reach); j <= y + reach; j++) {
     const row = rowAt(j)
-    // Part of the row in which all planes are above the ground.
-    let from = Math.floor(x - reach) - x
-    let to = reach
-    for (let n = 0; n < planes.length; n += 3) {
-      const slope = planes[n + 1]
-      const edge = -(planes[n] + (j - y) * planes[n + 2]) / slope
-      if (slope > 0) from = Math.max(from, edge)
-      else to = Math.min(to, edge)
-    }
-    for (let i = Math.ceil(x + from); i <= x + to; i++) {
+    for (let i = Math.floor(x - reach); i <= x + reach; i++) {
+      const at = row + wrapped(i)
       let height = Infinity
-      for (let n = 0; n < planes.length; n += 3) {
+      // Most texels are out of the first sides already.
+      for (let n = 0; n < planes.length && height > heights[at]; n += 3) {
         const plane = planes[n] + (i - x) * planes[n + 1] + (j - y) * planes[n + 2]
         if (plane < height) height = plane
       }
-      const n = row + wrapped(i)
-      if (height > heights[n]) heights[n] = height
+      if (height > heights[at]) heights[at] = height
     }
   }
 }
@@ -101,20 +93,14 @@ function addStone(heights: Float32Array, radius: number, random: () => number): 
 /** Lays a round spot over what is there: soft at its edge, with a shadow about it. */
 function addSpot(light: Float32Array, x: number, y: number, radius: number, value: number): void {
   const reach = radius + 1.5
-  const full = Math.max(radius - 0.5, 0) ** 2
   for (let j = Math.ceil(y - reach); j <= y + reach; j++) {
     const row = rowAt(j)
     const away = (j - y) ** 2
     const half = Math.sqrt(reach ** 2 - away)
     for (let i = Math.ceil(x - half); i <= x + half; i++) {
       const n = row + wrapped(i)
-      const square = (i - x) ** 2 + away
-      if (square <= full) {
-        light[n] = value
-        continue
-      }
-      const inside = radius - Math.sqrt(square)
-      const cover = Math.max(inside + 0.5, 0)
+      const inside = radius - Math.sqrt((i - x) ** 2 + away)
+      const cover = Math.min(Math.max(inside + 0.5, 0), 1)
       const shade = Math.min(inside + 1.5, 1) * (1 - cover)
       light[n] = light[n] * (1 - 0.3 * shade) * (1 - cover) + value * cover
     }
