@@ -23,7 +23,7 @@ export const GRASS: Color = [0.13, 0.172, 0.051]
 export const STRAW: Color = [0.24, 0.205, 0.095]
 export const FOREST: Color = [0.026, 0.042, 0.019]
 
-/** What grows on fields, up to a chance: grass, young and ripe corn, hay, earth, and then woods. */
+/** Crops of fields, up to a chance: grass, young and ripe corn, hay, earth, and then woods. */
 const CROPS: readonly (readonly [chance: number, color: Color])[] = [
   [0.46, GRASS],
   [0.61, [0.062, 0.118, 0.03]],

@@ -60,7 +60,7 @@ const FAR = 600
 export interface TreePictures {
   readonly color: RenderTarget
   readonly normal: RenderTarget
-  /** What each shows [m]. */
+  /** Width and height that each shows [m]. */
   readonly frame: Frame
 }
 
