@@ -1,14 +1,17 @@
 declare global {
-  /** Samples per texel of three's filter of environments; its own 256 where it is not set. */
-  var filterSamples: number | undefined
+  /** What three's filter of environments goes by; where it is not set, 256 samples and faces of 16² texels. */
+  var filterSamples: { samples: number; edge: number } | undefined
 }
 
-/** Number of samples with which reflections on a rough ball are within a few per cent. */
-const FEW = 32
+/**
+ * Samples per texel, and edge of the faces whose texels are summed up for what is rough, with which reflections on a rough ball are
+ * within a few per cent.
+ */
+const FEW = { samples: 32, edge: 8 }
 
 /**
- * Has three, from now on, filter environments with an eighth of its samples: at 256 a software renderer
- * takes seconds for one, longer than for all else in most tests.
+ * Has three, from now on, filter environments with an eighth of its samples, and a quarter of them for what is rough: with all, a
+ * software renderer takes seconds for one, longer than for all else in most tests.
  *
  * @param isCoarse - False: from now on, as users have it.
  */

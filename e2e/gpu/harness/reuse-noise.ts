@@ -16,13 +16,8 @@ import {
   CloudNoise as BakedNoise,
   type CloudNoiseOptions
 } from '../../../packages/clouds/src/noise/CloudNoise'
+import { keepTexels, keptTexels, type Texels } from './kept-texels'
 import { isReusingTables, readTexels, waitFor } from './reuse-tables'
-
-const STORE = 'noise'
-
-type Texels = Uint8Array<ArrayBuffer>
-
-const _kept = new Map<string, Texels>()
 
 const pixel = (): Node<'ivec2'> => ivec2(int(screenCoordinate.x), int(screenCoordinate.y))
 
@@ -66,21 +61,7 @@ async function keep(renderer: Renderer, volume: RenderTarget3D, key: string): Pr
     copy.dispose()
     return readTexels<Texels>(renderer, picture).finally(() => picture.dispose())
   })
-  const blob = new Blob(await Promise.all(pictures))
-  _kept.set(key, new Uint8Array(await blob.arrayBuffer()))
-  await (await caches.open(STORE)).put(`/${key}`, new Response(blob))
-}
-
-/** Fetches what other pages have kept. */
-export async function loadNoise(): Promise<void> {
-  const store = await caches.open(STORE)
-  for (const { url } of await store.keys()) {
-    const key = new URL(url).pathname.slice(1)
-    if (_kept.has(key)) continue
-    const response = await store.match(url)
-    const texels = await response?.arrayBuffer()
-    if (texels) _kept.set(key, new Uint8Array(texels))
-  }
+  await keepTexels(key, await Promise.all(pictures))
 }
 
 /** Copies kept levels into a volume, in as many steps as the library's bake takes. */
@@ -115,20 +96,21 @@ function* restore(
   }
 }
 
-/** Clouds' noise, reused just as tables are, once {@link loadNoise} has been called. */
+/** Clouds' noise, reused just as tables are. */
 export class CloudNoise extends BakedNoise {
   constructor(options: CloudNoiseOptions = {}) {
     super(options)
     if (options.weather === undefined) this.#reuse('weather')
     if (options.shape === undefined) this.#reuse('shape')
+    if (options.detail === undefined) this.#reuse('detail')
   }
 
-  #reuse(name: 'weather' | 'shape'): void {
+  #reuse(name: 'weather' | 'shape' | 'detail'): void {
     const { [name]: volume } = this
     const bake = volume.bake.bind(volume)
     volume.bake = function* (renderer) {
       const key = 'isWebGPUBackend' in renderer.backend ? `${name}.webgpu` : `${name}.webgl`
-      const kept = isReusingTables() ? _kept.get(key) : undefined
+      const kept = isReusingTables() ? keptTexels(key) : undefined
       if (kept) {
         yield* restore(renderer, volume.target, kept)
         return

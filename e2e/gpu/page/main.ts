@@ -2,7 +2,7 @@ import { modules } from 'virtual:modules'
 import { createContext } from '../harness/context'
 import { loadSuite, type GpuSuite } from '../harness/gpu-test'
 import type { Backend } from '../../harness/backend'
-import { loadNoise } from '../harness/reuse-noise'
+import { loadTexels } from '../harness/kept-texels'
 import { filterCoarsely } from '../harness/filter-samples'
 import { keepTables, reuseTables } from '../harness/reuse-tables'
 import { requestOffscreenFrames } from '../../harness/offscreenFrames'
@@ -44,7 +44,7 @@ async function load(suite: string): Promise<GpuSuite> {
 window.welkinTests = {
   async list(suite, backend) {
     const { tests } = await load(suite)
-    await loadNoise()
+    await loadTexels()
     return tests
       .filter(test => test.backends.includes(backend))
       .map(({ name, timeoutSeconds }) => ({ name, timeoutSeconds }))

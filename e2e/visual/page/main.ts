@@ -2,7 +2,7 @@ import { modules } from 'virtual:modules'
 import { ConsoleWatch } from '../../gpu/harness/console'
 import type { Backend } from '../../harness/backend'
 import { filterCoarsely } from '../../gpu/harness/filter-samples'
-import { loadNoise } from '../../gpu/harness/reuse-noise'
+import { loadTexels } from '../../gpu/harness/kept-texels'
 import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
 import { requestOffscreenFrames } from '../../harness/offscreenFrames'
 import { freeResources, shareDevice } from '../../harness/shareDevice'
@@ -95,7 +95,7 @@ window.welkinVisual = {
   },
 
   async shoot(file, story, backend, type = 'image/png') {
-    await loadNoise()
+    await loadTexels()
     const create = await findCreate(file)
     setShadowSize('pictures')
     const stories = await load(`${file}.stories`)
