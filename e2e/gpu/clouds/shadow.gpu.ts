@@ -35,7 +35,7 @@ import { expectTrue } from '../harness/expect'
 import { gpuTest, takeFineShadows } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 
-takeFineShadows()
+takeFineShadows('half')
 
 const size = { width: 48, height: 48 }
 

@@ -1,5 +1,6 @@
 import type { Backend } from '../../harness/backend'
 import type { GpuContext } from './context'
+import type { ShadowSize } from './shadow-size'
 
 export interface GpuTest {
   name: string
@@ -17,27 +18,31 @@ export interface GpuTest {
 /** Tests of a file. */
 export interface GpuSuite {
   tests: GpuTest[]
-  /** True if they measure the clouds' shadows. */
-  areShadowsFine: boolean
+  /** Coarse, unless they measure the clouds' shadows. */
+  shadowSize: ShadowSize
 }
 
 const _suites = new Map<string, GpuSuite>()
-let current: GpuSuite = { tests: [], areShadowsFine: false }
+let current: GpuSuite = { tests: [], shadowSize: 'coarse' }
 
 /** Tests that a file registers when it is loaded, which it is once in a page. */
 export async function loadSuite(name: string, load: () => Promise<unknown>): Promise<GpuSuite> {
   const loaded = _suites.get(name)
   if (loaded) return loaded
-  const suite: GpuSuite = { tests: [], areShadowsFine: false }
+  const suite: GpuSuite = { tests: [], shadowSize: 'coarse' }
   current = suite
   await load()
   _suites.set(name, suite)
   return suite
 }
 
-/** Has all tests of a file draw shadow maps of clouds as users have them, not a quarter as fine. */
-export function takeFineShadows(): void {
-  current.areShadowsFine = true
+/**
+ * Has all tests of a file draw shadow maps of clouds as users have them, not a quarter as fine.
+ *
+ * @param size - Half as fine, where such maps pass for those.
+ */
+export function takeFineShadows(size: 'fine' | 'half' = 'fine'): void {
+  current.shadowSize = size
 }
 
 /**

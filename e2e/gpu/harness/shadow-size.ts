@@ -3,10 +3,15 @@ declare global {
   var setCascadeSize: ((size: number) => void) | undefined
 }
 
-/** Texels along an edge of a cascade: as users have it, in pictures of stories, and where shadows are not measured. */
-const sizes = { fine: 256, pictures: 128, coarse: 64 }
+/**
+ * Texels along an edge of a cascade: as users have it, in pictures of stories and where shadows so coarse pass for those, and where
+ * shadows are not measured.
+ */
+const sizes = { fine: 256, half: 128, coarse: 64 }
+
+export type ShadowSize = keyof typeof sizes
 
 /** Makes shadow maps of clouds, from now on, with fewer texels than users', or with as many. */
-export function setShadowSize(size: keyof typeof sizes): void {
+export function setShadowSize(size: ShadowSize): void {
   globalThis.setCascadeSize?.(sizes[size])
 }

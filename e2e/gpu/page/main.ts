@@ -51,14 +51,14 @@ window.welkinTests = {
   },
 
   async run(suite, name, backend) {
-    const { tests, areShadowsFine } = await load(suite)
+    const { tests, shadowSize } = await load(suite)
     const test = tests.find(candidate => candidate.name === name)
     if (test === undefined) throw new Error(`no test named ${name}`)
     const { bakes } = test
     const isWhole = typeof bakes === 'boolean' ? bakes : bakes.includes(backend)
     reuseTables(!isWhole)
     filterCoarsely(!isWhole)
-    setShadowSize(areShadowsFine ? 'fine' : 'coarse')
+    setShadowSize(shadowSize)
     const { context, finish } = createContext(backend)
     const start = performance.now()
     const problems: string[] = []

@@ -97,7 +97,7 @@ window.welkinVisual = {
   async shoot(file, story, backend, type = 'image/png') {
     await loadTexels()
     const create = await findCreate(file)
-    setShadowSize('pictures')
+    setShadowSize('half')
     const stories = await load(`${file}.stories`)
     const args = {
       ...(stories.default as Story).args,
