@@ -20,7 +20,7 @@ const steps = [
   { id: 'gpu', title: 'GPU tests', script: 'test:gpu' },
   { id: 'smoke', title: 'GPU smoke test', script: 'test:gpu', args: ['smoke'], onDemand: true },
   { id: 'visual', title: 'Visual regression', script: 'test:visual' },
-  { id: 'moving', title: 'Moving in stories', script: 'test:moving' },
+  { id: 'moving', title: 'Moving in stories', script: 'test:moving', lane: 'moving' },
   { id: 'consumer', title: 'Consumer install', script: 'test:consumer', lane: 'consumer' },
   { id: 'validate', title: 'Reference data', args: ['--check'], lane: 'reference' },
   {

@@ -12,7 +12,7 @@ import type { Report } from '../harness/report'
 /** Wide enough for Storybook's list and controls; what is left is small, for it is drawn in software. */
 const viewport = { width: 720, height: 300 }
 const STORY = 'valley-all-day--day'
-const START_SECONDS = 120
+const START_SECONDS = 240
 /** Longest that Storybook's controls may take while the valley is drawn in software, in the same thread [s]. */
 const SLOW_SECONDS = 240
 /** Length of a day: a frame in software, of which a tenth of a second counts, is as long as five minutes of it [s]. */

@@ -12,7 +12,9 @@ import { startStorybook, testLink } from './link'
 const viewport = { width: 160, height: 90 }
 /** Room for the buttons beside the fingers. */
 const touchViewport = { width: 240, height: 220 }
-const limitSeconds = 600
+const limitSeconds = 1200
+/** Longest that the page may take for what it is told, beside other steps on a slow machine [ms]. */
+const waitMilliseconds = 240_000
 /** Storybook's pages are compiled as they are asked for, and the valley is drawn in software. */
 const linkLimitSeconds = 1200
 const stories = fileURLToPath(new URL('../../stories/src/plain.stories.ts', import.meta.url))
@@ -26,7 +28,7 @@ async function until(
   page: Page,
   isRight: (view: ExplorerState) => boolean
 ): Promise<ExplorerState> {
-  const end = performance.now() + 60_000
+  const end = performance.now() + waitMilliseconds
   for (;;) {
     const view = await look(page)
     if (isRight(view)) return view
@@ -47,7 +49,7 @@ async function atRest(page: Page): Promise<ExplorerState> {
 
 /** Waits until the address has another view than before. */
 async function addressAfter(page: Page, before: string): Promise<string> {
-  await page.waitForFunction(url => location.href !== url, before, { timeout: 60_000 })
+  await page.waitForFunction(url => location.href !== url, before, { timeout: waitMilliseconds })
   // What moved has come to rest, and the address with it.
   await page.waitForTimeout(1200)
   return page.url()
@@ -58,7 +60,7 @@ async function open(browser: Browser, url: string): Promise<Page> {
   const page = await browser.newPage({ viewport })
   page.on('pageerror', error => report.fail('page error', error.stack ?? error.message))
   await page.goto(url)
-  await page.waitForFunction(() => 'welkinMoving' in window)
+  await page.waitForFunction(() => 'welkinMoving' in window, null, { timeout: waitMilliseconds })
   await page.evaluate(() => window.welkinMoving.show('plain', 'Afternoon'))
   return page
 }
@@ -189,7 +191,7 @@ async function touch(page: Page): Promise<void> {
 async function helpAgain(page: Page): Promise<void> {
   const button = page.locator('.welkin-help')
   const says = async (text: string): Promise<void> =>
-    button.filter({ hasText: text }).waitFor({ timeout: 60_000 })
+    button.filter({ hasText: text }).waitFor({ timeout: waitMilliseconds })
   await says('?')
   report.pass('the line is hidden after a while')
   await page.keyboard.press('h')
