@@ -1,5 +1,5 @@
 declare global {
-  /** What three's filter of environments goes by; where it is not set, 256 samples and faces of 16² texels. */
+  /** Samples of three's filter of environments, and edge of faces; where it is not set, 256, and 16 texels. */
   var filterSamples: { samples: number; edge: number } | undefined
 }
 

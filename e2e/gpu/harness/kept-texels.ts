@@ -5,7 +5,7 @@ export type Texels = Uint8Array<ArrayBuffer>
 
 const _kept = new Map<string, Texels>()
 
-/** What has been kept by a name; undefined if nothing has. */
+/** Bytes kept by a name; undefined if there are none. */
 export const keptTexels = (key: string): Texels | undefined => _kept.get(key)
 
 /** Keeps bytes by a name, for this page and those to come. */
