@@ -17,7 +17,7 @@ export interface BowCost {
   name: string
   withoutMs: number
   bowsMs: number
-  /** What each pass takes more, in the order in which they are drawn. */
+  /** Additional time of each pass, in the order in which they are drawn. */
   passes: number[]
 }
 
