@@ -54,7 +54,7 @@ export interface FrameTimes {
   passes: number[]
 }
 
-/** What clouds scatter light by. */
+/** Scattering of clouds and rain. */
 export interface CloudBenchOptions {
   /** Default: lobes of a fair-weather cloud. */
   light?: CloudLightTable

@@ -6,7 +6,7 @@ import { shower } from './clouds'
 import { median } from './statistics'
 
 /** Times that pictures without and with bows are timed in turn: a GPU's clock drifts within a second. */
-const ROUNDS = 6
+const ROUNDS = 4
 
 /** Frames before any are timed, and after each change of pictures. */
 const WARM_UP = 40
@@ -17,7 +17,7 @@ export interface BowCost {
   name: string
   withoutMs: number
   bowsMs: number
-  /** What each pass takes more, in the order in which they are drawn. */
+  /** Additional time of each pass, in the order in which they are drawn. */
   passes: number[]
 }
 
@@ -51,11 +51,12 @@ const CASES: readonly BowCase[] = [
   }
 ]
 
-/** Times what bows add to clouds at `high`, seen from the ground. */
+/** Times what bows add to clouds at `high`, seen from the ground; `tell` gets each at once. */
 export async function timeBows(
   device: HeadlessDevice,
   size: readonly [number, number],
-  frames: number
+  frames: number,
+  tell: (cost: BowCost) => void
 ): Promise<BowCost[]> {
   const costs: BowCost[] = []
   for (const { name, layers, without, bows } of CASES) {
@@ -77,7 +78,9 @@ export async function timeBows(
       return [ms - before.ms, ...passes.map((pass, k) => pass - before.passes[k])]
     })
     const [bowsMs, ...passes] = more[0].map((_, k) => median(more.map(round => round[k])))
-    costs.push({ name, withoutMs: median(rounds[0].map(({ ms }) => ms)), bowsMs, passes })
+    const cost = { name, withoutMs: median(rounds[0].map(({ ms }) => ms)), bowsMs, passes }
+    tell(cost)
+    costs.push(cost)
     for (const bench of benches) bench.dispose()
     release(renderer)
   }

@@ -86,8 +86,7 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
     return { lightning: costs }
   },
   async bows() {
-    const bows = await timeBows(device, size, frames)
-    for (const cost of bows) log(bowLine(cost))
+    const bows = await timeBows(device, size, frames, cost => log(bowLine(cost)))
     return { bows }
   },
   async valley() {
@@ -169,7 +168,7 @@ for (const name of only) {
 log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
 const result: Record<string, unknown> = { device: device.name }
 /** Parts for which one asks: all of `clouds` has the showers, too; the others are no figures of cost. */
-const ASKED = new Set(['showers', 'cracks', 'switches'])
+const ASKED = new Set(['bows', 'showers', 'cracks', 'switches'])
 const all = Object.keys(parts).filter(name => !ASKED.has(name))
 for (const name of only.length > 0 ? only : all) {
   Object.assign(result, await parts[name]())

@@ -8,8 +8,8 @@ const NORMAL_BIAS = 1.2
 /** Frames at the start in which all cascades are drawn: stills have few. */
 const WHOLE_FRAMES = 10
 
-/** Turn of the camera by which all cascades are drawn at once [rad]: they are wider than what it sees by nearly twice as much, at least. */
-const TURN = 0.05
+/** Turn of the camera by which all cascades are drawn at once [rad]: they are wider than what it sees, on each side, by 0.11 of their distance at least. */
+const TURN = 0.08
 
 /** Way of the camera [parts of a cascade's width], and turn of the sun [rad], after which a cascade is drawn anew. */
 const WAY = 0.01

@@ -32,6 +32,9 @@ const EVERY = 2
 const BLUR = 6
 const LIKE = 1.2
 
+/** Pictures for each that the grid is drawn for: its tiles are wide, and what is seen stays about the same over a few. */
+const PICTURES = 2
+
 /** log2 of luminance that stays as it is: middle grey. */
 const KEY = Math.log2(0.17)
 
@@ -64,6 +67,7 @@ export class LocalExposure {
   /** Stops of the next picture's luminance scale over that of the grid. */
   readonly #shift = uniform(0)
   #kept = 1
+  #pictures = 0
 
   /** @param picture - Exposed light of the last frame. */
   constructor(renderer: Renderer, picture: TextureNode) {
@@ -136,9 +140,9 @@ export class LocalExposure {
     this.#shift.value = Math.log2(luminanceScale / this.#kept)
   }
 
-  /** Keeps the picture that was just drawn in a luminance scale, unless the next one is shown as it is. */
+  /** Keeps the picture that was just drawn in a luminance scale, one of two, unless the next one is shown as it is. */
   update(renderer: Renderer, luminanceScale: number): void {
-    if (this.#strength.value === 0) return
+    if (this.#strength.value === 0 || this.#pictures++ % PICTURES !== 0) return
     this.#kept = luminanceScale
     this.#passes[0].render(renderer, this.#cells)
     this.#passes[1].render(renderer, this.#grid)

@@ -84,7 +84,7 @@ function checkRising(
  * From a histogram of log2 luminance the mean between two {@link percentiles} becomes 0.17, less where a large part is much
  * brighter ({@link highlightPriority}), and the upper percentile no more than 8: for tone mappings with soft highlights, such as
  * `AgXToneMapping` and `ACESFilmicToneMapping`. What is over 8 stops darker than the upper percentile counts less and over 12 not at all.
- * Beside such black the rest is shown brighter, until its brightest tenth is at 0.8. The picture is read back a frame or more later, without a wait, one at a time.
+ * Beside such black the rest is shown brighter, until its brightest tenth is at 0.6. The picture is read back a frame or more later, without a wait, one at a time.
  *
  * `luminanceScale` is that of all cameras, so an atmosphere has one of these. Lamps and emissive materials of your own
  * must follow it, or they are metered wrong, too.

@@ -1,6 +1,5 @@
 import { aerialPerspectiveTo, tableTarget, type AtmosphereView } from '@welkin/atmosphere'
 import {
-  AddEquation,
   Box2,
   BufferGeometry,
   CustomBlending,
@@ -44,9 +43,8 @@ const _toView = new Matrix3()
 const _point = new Vector3()
 const _clip = new Vector4()
 const _corner = new Vector2()
-const _zero = new Vector2()
 const _box = new Box2()
-const _picture = new Box2()
+const _picture = new Box2(new Vector2())
 
 /** Quads of all pieces: which corner a vertex is, for its position, and where its piece begins and ends. */
 function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
@@ -152,14 +150,10 @@ export class BoltPass {
       name: 'Welkin.LightningChannel',
       blending: CustomBlending,
       blendEquation: MaxEquation,
-      blendEquationAlpha: AddEquation,
       blendSrc: OneFactor,
       blendDst: OneFactor,
       depthTest: false,
       depthWrite: false,
-      toneMapped: false,
-      fog: false,
-      lights: false,
       transparent: true,
       side: DoubleSide
     })
@@ -221,9 +215,9 @@ export class BoltPass {
     const drawn = at.mul(this.#crop.xy).add(this.#crop.zw).toConst() as Vec2
     const light = vec3(0).toVar() as Variable<Vec3>
     If(drawn.clamp(0, 1).equal(drawn).all(), () => {
-      const drawnLight = this.#texture.sample(drawn).level(0).xy.toConst()
-      If(drawnLight.x.greaterThan(0), () => {
-        light.assign(channelColor(drawnLight))
+      const { xy } = this.#texture.sample(drawn).level(0).toConst() as Vec4
+      If(xy.x.greaterThan(0), () => {
+        light.assign(channelColor(xy))
       })
     })
     return light
@@ -272,28 +266,27 @@ export class BoltPass {
           .set(...end)
           .applyMatrix3(this.#toView.value)
           .add(this.#placeView.value)
+        const { x, y, w } = _clip.set(..._point.toArray(), 1).applyMatrix4(this.#projection.value)
+        if (w > 0) box.expandByPoint(_corner.set(1 + x / w, 1 - y / w))
         // What is behind the camera is anywhere in the picture.
-        const isBefore =
-          _clip.set(..._point.toArray(), 1).applyMatrix4(this.#projection.value).w > 0
-        const [u, v] = isBefore ? [_clip.x / _clip.w, -_clip.y / _clip.w] : [0, 0]
-        box.expandByPoint(_corner.set(u + 1, v + 1))
-        if (!isBefore) box.expandByPoint(_corner.set(0, 0)).expandByPoint(_corner.set(2, 2))
+        else for (const edge of [0, 2]) box.expandByPoint(_corner.setScalar(edge))
       }
+    const { min, max } = box
     const all = _corner.set(width, height).multiplyScalar(0.5)
-    box.min.multiply(all).subScalar(HALF_WIDTH)
-    box.max.multiply(all).addScalar(HALF_WIDTH)
-    box.intersect(_picture.set(_zero, _corner.set(width, height)))
+    min.multiply(all).subScalar(HALF_WIDTH)
+    max.multiply(all).addScalar(HALF_WIDTH)
+    _picture.max.set(width, height)
     this.#crop.value.set(0, 0, 2, 2)
-    if (box.isEmpty()) return false
+    if (box.intersect(_picture).isEmpty()) return false
+    min.floor()
     // In steps, and growing alone: a texture of a new size is a new texture.
-    const [across, down] = (['x', 'y'] as const).map(axis => {
-      const wanted = Math.ceil((box.max[axis] - Math.floor(box.min[axis])) / STEP) * STEP
-      const before = axis === 'x' ? this.#target.width : this.#target.height
-      return Math.min(Math.max(wanted, before), axis === 'x' ? width : height)
-    })
+    const grown = (wanted: number, before: number, most: number): number =>
+      Math.min(Math.max(Math.ceil(wanted / STEP) * STEP, before), most)
+    const across = grown(max.x - min.x, this.#target.width, width)
+    const down = grown(max.y - min.y, this.#target.height, height)
     this.#target.setSize(across, down)
-    const left = Math.min(Math.floor(box.min.x), width - across)
-    const top = Math.min(Math.floor(box.min.y), height - down)
+    const left = Math.min(min.x, width - across)
+    const top = Math.min(min.y, height - down)
     this.#crop.value.set(width / across, height / down, -left / across, -top / down)
     return true
   }

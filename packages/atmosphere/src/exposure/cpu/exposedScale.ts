@@ -15,6 +15,9 @@ const HIGHLIGHT = 8
 /** Luminance that a tenth of the picture may exceed [–]: shown as 0.85 of white in sRGB by `photographicToneMapping`. */
 const LIGHT = 0.8
 
+/** Luminance up to which a tenth of what is beside black is made brighter [–]: 0.78 of white. More: seas are pale from orbit. */
+const BESIDE_BLACK = 0.6
+
 /** Settings of an automatic exposure that need no picture. */
 export interface ExposureSettings {
   /** Brightness over what is metered [EV]. */
@@ -52,7 +55,7 @@ const pictureLuminance = (luminance: number): number =>
  * Scale by which a metered luminance shows as middle grey, or darker by night.
  *
  * Beside black, such as space, what is seen is brighter: the mean light of the whole picture stays, up to where the brightest
- * tenth is at {@link LIGHT}. So a planet before space has bright clouds, and its seas keep their blue.
+ * tenth is at {@link BESIDE_BLACK}. So a planet before space has bright clouds, and its seas keep their blue.
  *
  * @param metered - Luminances, each > 0.
  * @returns `luminanceScale`, > 0 [1/(cd/m²)].
@@ -70,7 +73,7 @@ export function exposedScale(
   const even = evenScale(luminance)
   const excess = Math.max((light * even) / LIGHT, 1)
   // The room is that of day: nights stay night.
-  const room = (LIGHT / MIDDLE_GREY) * (luminance / light)
+  const room = (BESIDE_BLACK / MIDDLE_GREY) * (luminance / light)
   const besideBlack = Math.max(Math.min(1 / metered.seen, room), 1)
   const brighter = Math.min(even * besideBlack, evenScale(least))
   const scale = brighter * excess ** -highlightPriority
