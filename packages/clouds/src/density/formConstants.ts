@@ -96,7 +96,7 @@ export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
   coarse: 0.76,
   fine: 1.55,
-  detail: 0.48,
+  detail: 0.44,
   /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
   coarseGrowth: 0.337,
   fineGrowth: 0.2,
@@ -112,7 +112,7 @@ export const billowForm = {
    * them, crumbs do not. Lower: crumbs float about clouds (*Cumulus*).
    */
   fineFrom: 0.02,
-  fineOver: 0.75,
+  fineOver: 0.8,
   /**
    * Strength of columns over which all their billows grow weaker, and the factor they end at [–]: only the top
    * of a strong column is an edge, and it is a round head. Factor 1: tops torn to shreds (*Cumulus*).

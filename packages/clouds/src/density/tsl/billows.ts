@@ -110,7 +110,9 @@ export const topBillows = (column: Float): Float =>
  */
 export function bulge(billow: Float, column: Float, needed: Float): Float {
   const lacking = smoothstep(...billowForm.bulgeFrom, column.sub(needed)).oneMinus()
-  const share = smoothstep(...billowForm.bulgeAbove, needed).mul(lacking).oneMinus()
+  const share = smoothstep(...billowForm.bulgeAbove, needed)
+    .mul(lacking)
+    .oneMinus()
   return billow.min(billow.mul(share)).toConst()
 }
 

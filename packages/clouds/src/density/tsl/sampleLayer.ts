@@ -95,7 +95,10 @@ function bodyAt(
       const rough = topBillows(column)
       const needed = neededStrength(layer, height).toConst() as Float
       const coarse = shape.coarse.mul(amount.coarse).mul(rough).toConst() as Float
-      const body = column.sub(needed).add(bulge(coarse, column, needed)).toConst() as Float
+      const body = column
+        .sub(needed)
+        .add(bulge(coarse, column, needed))
+        .toConst() as Float
       const share = fineShare(body)
       const fine = shape.fine.mul(amount.fine).mul(rough)
       strength.assign(body.add(fine.mul(share)))
