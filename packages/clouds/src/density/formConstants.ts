@@ -101,9 +101,9 @@ export const billowForm = {
   coarseGrowth: 0.337,
   fineGrowth: 0.2,
   /**
-   * What a column has over the strength that a height needs, over which its coarse billows come to bulge out of it, and needed
-   * strength over which that begins to count: near the base small clouds are bulges alone [–]. Lower: heads without stems float beside
-   * towers; higher: smooth towers (*Cumulus*).
+   * Strength of a column, less what a height needs, over which coarse billows come to bulge out of it [–]; and needed strength
+   * over which that begins to count: near the base small clouds are bulges alone. Lower: heads without stems float beside towers; higher:
+   * smooth towers (*Cumulus*).
    */
   bulgeFrom: [-1.8, -0.6],
   bulgeAbove: [0.3, 1],

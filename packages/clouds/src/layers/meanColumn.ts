@@ -123,7 +123,7 @@ export const densityOf = (edge: number, strength: number): number =>
 export const topBillows = (column: number): number =>
   1 + (billowForm.atTops - 1) * MathUtils.smoothstep(column, ...billowForm.middle)
 
-/** What coarse billows of a strength add to a column: `bulge` of density/tsl/billows.ts. */
+/** Strength that coarse billows add to a column: `bulge` of density/tsl/billows.ts. */
 export function bulge(billow: number, column: number, needed: number): number {
   const { bulgeFrom, bulgeAbove } = billowForm
   const lacking = 1 - MathUtils.smoothstep(column - needed, ...bulgeFrom)

@@ -101,8 +101,8 @@ export const topBillows = (column: Float): Float =>
     .toConst()
 
 /**
- * What coarse billows add to a column's strength at a height: they carve all columns, and bulge out of those that nearly reach it.
- * Out of others they would be heads without stems.
+ * Strength that coarse billows add to a column at a height [–]: they carve all columns, and bulge out of those that nearly reach it. Out
+ * of others they would be heads without stems. Twin: layers/meanColumn.ts
  *
  * @param billow - Their strength [–].
  * @param column - Strength of the column [–].
