@@ -96,16 +96,23 @@ export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
   coarse: 0.76,
   fine: 1.55,
-  detail: 0.48,
+  detail: 0.44,
   /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
   coarseGrowth: 0.337,
   fineGrowth: 0.2,
+  /**
+   * Strength of a column, less what a height needs, over which coarse billows come to bulge out of it [–]; and needed strength
+   * over which that begins to count: near the base small clouds are bulges alone. Lower: heads without stems float beside towers; higher:
+   * smooth towers (*Cumulus*).
+   */
+  bulgeFrom: [-1.8, -0.6],
+  bulgeAbove: [0.3, 1],
   /**
    * Strength from which on fine billows are whole, and range below it over which they set in [–]: bodies have
    * them, crumbs do not. Lower: crumbs float about clouds (*Cumulus*).
    */
   fineFrom: 0.02,
-  fineOver: 0.5,
+  fineOver: 0.8,
   /**
    * Strength of columns over which all their billows grow weaker, and the factor they end at [–]: only the top
    * of a strong column is an edge, and it is a round head. Factor 1: tops torn to shreds (*Cumulus*).

@@ -123,6 +123,14 @@ export const densityOf = (edge: number, strength: number): number =>
 export const topBillows = (column: number): number =>
   1 + (billowForm.atTops - 1) * MathUtils.smoothstep(column, ...billowForm.middle)
 
+/** Strength that coarse billows add to a column: `bulge` of density/tsl/billows.ts. */
+export function bulge(billow: number, column: number, needed: number): number {
+  const { bulgeFrom, bulgeAbove } = billowForm
+  const lacking = 1 - MathUtils.smoothstep(column - needed, ...bulgeFrom)
+  const share = 1 - lacking * MathUtils.smoothstep(needed, ...bulgeAbove)
+  return Math.max(billow, 0) * share + Math.min(billow, 0)
+}
+
 /** Factor of the density of bits that only billows make: `crumbDensity` of density/tsl/density.ts. */
 export function crumbDensity(column: number, needed: number): number {
   const { crumb, crumbFrom, crumbHeight } = densityForm
@@ -219,7 +227,7 @@ function columnAt(
     const mean = meanOverHeights(height => {
       const { column, needed, rough, edge, crumbs } = strengths(i, height)
       const here = BILLOWS.reduce((part, [deviation, weight]) => {
-        const strength = column - needed + rough * deviation
+        const strength = column - needed + bulge(rough * deviation, column, needed)
         return part + weight * densityOf(edge, strength) * crumbs
       }, 0)
       return here * densityAtHeight(layer, height)

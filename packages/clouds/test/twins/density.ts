@@ -16,6 +16,7 @@ import {
   weatherScales
 } from '../../src/layers/layerUniforms'
 import {
+  bulge,
   crumbDensity,
   densityAtHeight,
   densityOf,
@@ -366,7 +367,7 @@ export function sampleLayer(
   const unbillowed = columnStrength(layer, weather, lost)
   const rough = topBillows(unbillowed)
   const needed = neededStrength(layer, height)
-  const inColumn = unbillowed - needed + ofCoarse * coarse * rough
+  const inColumn = unbillowed - needed + bulge(ofCoarse * coarse * rough, unbillowed, needed)
   const share = clamp(1 + (inColumn - billowForm.fineFrom) / billowForm.fineOver, 0, 1)
   const ofDetail =
     shapeAmount * detailAmount * billowForm.detail * growing(billowForm.fineGrowth) * sign * share

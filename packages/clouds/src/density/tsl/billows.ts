@@ -100,6 +100,22 @@ export const topBillows = (column: Float): Float =>
     .mix(float(1), billowForm.atTops)
     .toConst()
 
+/**
+ * Strength that coarse billows add to a column at a height [–]: they carve all columns, and bulge out of those that nearly reach it. Out
+ * of others they would be heads without stems. Twin: layers/meanColumn.ts
+ *
+ * @param billow - Their strength [–].
+ * @param column - Strength of the column [–].
+ * @param needed - `neededStrength` at the height [–].
+ */
+export function bulge(billow: Float, column: Float, needed: Float): Float {
+  const lacking = smoothstep(...billowForm.bulgeFrom, column.sub(needed)).oneMinus()
+  const share = smoothstep(...billowForm.bulgeAbove, needed)
+    .mul(lacking)
+    .oneMinus()
+  return billow.min(billow.mul(share)).toConst()
+}
+
 /** Share of fine billows and detail that a body has, in [0, 1]: dense bodies have them, crumbs do not. */
 export const fineShare = (strength: Float): Float =>
   strength.sub(billowForm.fineFrom).div(billowForm.fineOver).add(1).clamp().toConst()

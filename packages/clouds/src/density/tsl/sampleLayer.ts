@@ -1,7 +1,7 @@
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Bool, Float, Vec3 } from '../../tsl-types'
-import { billows, detail, fineShare, MOST_DETAIL, topBillows } from './billows'
+import { billows, bulge, detail, fineShare, MOST_DETAIL, topBillows } from './billows'
 import { crumbDensity, densityOf, edgeAt } from './density'
 import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
@@ -94,9 +94,10 @@ function bodyAt(
       const column = columnStrength(layer, weather, background.coverage, resolution)
       const rough = topBillows(column)
       const needed = neededStrength(layer, height).toConst() as Float
+      const coarse = shape.coarse.mul(amount.coarse).mul(rough).toConst() as Float
       const body = column
         .sub(needed)
-        .add(shape.coarse.mul(amount.coarse).mul(rough))
+        .add(bulge(coarse, column, needed))
         .toConst() as Float
       const share = fineShare(body)
       const fine = shape.fine.mul(amount.fine).mul(rough)

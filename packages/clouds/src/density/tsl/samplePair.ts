@@ -3,6 +3,7 @@ import type { CloudField } from '../CloudField'
 import type { WeatherMap } from '../WeatherMap'
 import type { Bool, Float, Int, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { componentAt } from './componentAt'
+import { denseShare } from './density'
 import { densityAtHeight } from './heightForm'
 import { forLayersUnrolled, heightIn, isWithin, layerAt, type LayerRange } from './layer'
 import {
@@ -27,7 +28,7 @@ export interface SamplePair {
   readonly likelyDistance: Float
   /** True where storms are so near that they were sampled. */
   readonly isNear: Bool
-  /** Greatest extinction that clouds have at their height [1/m]. */
+  /** Extinction that steps go by: what was found, and what is likely at their height [1/m]. */
   readonly greatest: Float
 }
 
@@ -80,7 +81,10 @@ export function samplePair(
     const clearUntil = isAlone ? float(0) : clear.dot(own).toConst()
     const isHere = isWithin(layer, height).toConst()
     If(isHere.and(clearUntil.lessThan(end)), () => {
-      greatest.assign(greatest.max(layer.density.mul(densityAtHeight(layer, height))))
+      const most = layer.density.mul(densityAtHeight(layer, height)).toConst() as Float
+      // A user's own clouds have edges of their own.
+      const dense = field.extinction ? most : most.mul(denseShare(layer, height))
+      greatest.assign(greatest.max(dense))
       const background = backgroundAt(field, layer, middle, { map, index })
       const likely = float(0).toVar()
       const storm = keptStorm()
