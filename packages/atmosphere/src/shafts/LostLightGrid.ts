@@ -14,6 +14,7 @@ import {
   type Vec4
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
+import { nearness, ROUGH, SIMILAR } from './tsl/nearness'
 import { depthOf, rarityAt, shownOf } from './tsl/rarity'
 import { FAR } from './tsl/without'
 
@@ -37,17 +38,8 @@ const APART_DEPTH = 6e4
  */
 const STEEP_LIMIT = 600
 
-/** Octaves of the light of clear air by which pixels differ that weigh half as much as those that have the same. Greater: halos at silhouettes. */
-const SIMILAR = 0.02
-
-/** The same where a foreground is, whose depths are rough; its weight counts twice. Smaller: grain, where few of those around count; greater: dark fringes at edges of clouds (*Sun behind cumulus*). */
-const ROUGH = 0.1
-
 /** Part of a pixel's light that means may take: where it is more, its own air is looked up. Greater: blue blotches before far clouds in snow (*snowShower* under a low sun). */
 const MOST_SURE = 0.7
-
-/** Octaves of depth by which pixels differ at least that much, however alike their light is. Smaller: ground at the horizon has the sky's. */
-const DISTINCT = 0.25
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
@@ -88,22 +80,6 @@ const partedLight = (light: Vec3): Vec3 =>
 function cellOf(index: Int, columns: number): Vec2 {
   const row = float(index).div(columns).floor().toConst()
   return vec2(float(index).sub(row.mul(columns)), row).toConst()
-}
-
-/**
- * Weight of a pixel by how near its air is to another's, by light and depth.
- *
- * @param rarity - 1/τ² of the other, and its depth `own`.
- * @param similar - Octaves by which it weighs half.
- */
-function nearness(rarity: Float, own: Float, depth: Float, similar: number): Float {
-  const light = rarity.add(1).div(rarityAt(depth).add(1)).log2().mul(0.5)
-  const apart = depth.sub(own).abs().min(DISTINCT).max(light.abs()).toConst()
-  return apart
-    .mul(apart)
-    .add(similar ** 2)
-    .reciprocal()
-    .toConst()
 }
 
 /** Air of a ray, as far as a picture shows it. */

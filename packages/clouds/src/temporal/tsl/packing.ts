@@ -29,8 +29,8 @@ const DISTANCE_STEPS = 2 ** 11 - 1
 const LOW_STEPS = 8
 
 /**
- * History's distances and sample count as four bytes: log₂ of the clouds' distance in eleven bits, which is good to 0.4 % (a
- * twelfth of a byte's steps: light shafts take away most of the light before it); log₂ of the end's in a byte, good to half
+ * History's distances and sample count as four bytes: log₂ of the clouds' distance in eleven bits, which is good to 0.4 % (an
+ * eighth of a byte's steps: light shafts take away most of the light before it); log₂ of the end's in a byte, good to half
  * of `SAME_DISTANCE`; and the count in thirteen. Half of what half floats take.
  *
  * @param distance - log₂ of the clouds' distance.
