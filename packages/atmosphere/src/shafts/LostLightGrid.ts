@@ -38,8 +38,8 @@ const APART_DEPTH = 6e4
  */
 const STEEP_LIMIT = 600
 
-/** Part of a pixel's light that means may take: where it is more, its own air is looked up. Greater: blue blotches before far clouds in snow (*snowShower* under a low sun). */
-const MOST_SURE = 0.7
+/** Part of a pixel's light that means may take before clouds: where it is more, its own air is looked up. Greater: blue blotches before far clouds in snow (*snowShower* under a low sun). */
+const MOST_SURE = 0.9
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
@@ -88,6 +88,8 @@ export interface SeenAir {
   readonly rarity: Float
   /** That of the ray without end. */
   readonly least: Float
+  /** True where a foreground is seen; left out, nowhere. */
+  readonly isSeen?: Bool
 }
 
 /** Light of a ray, linear sRGB of about that for unit irradiance. */
@@ -289,7 +291,8 @@ export class LostLightGrid {
    * @param lit - Light of its air up to a distance [m]. Called in a branch.
    * @param shown - Light of all that the pixel shows, of which it loses no greater a part than its air does of its own.
    */
-  read(at: Vec2, { rarity, least }: SeenAir, lit: (distance: Float) => Vec3, shown?: Vec3): Vec3 {
+  read(at: Vec2, seen: SeenAir, lit: (distance: Float) => Vec3, shown?: Vec3): Vec3 {
+    const { rarity, least, isSeen } = seen
     const middle = at.mul(this.#scale).add(this.#offset).toConst() as Vec2
     // Light that is lost, and depth.
     const mean = sampleLevel0(this.#texels, middle).toConst()
@@ -300,7 +303,7 @@ export class LostLightGrid {
     const isUnlike = isOff(own).and(isOff(LIT_DEPTH))
     const excess = shown && lost.sub(shown.mul(MOST_SURE)).toConst()
     const isMuch = excess?.x.max(excess.y).max(excess.z).greaterThan(0)
-    If(isMuch ? isUnlike.or(isMuch) : isUnlike, () => {
+    If(isMuch && isSeen ? isUnlike.or(isSeen.and(isMuch)) : isUnlike, () => {
       const size = this.#gridSize
       const place = middle.div(this.#texelSize).sub(1).toConst() as Vec2
       const corner = place.floor().toConst() as Vec2

@@ -188,7 +188,7 @@ export class ScreenShafts implements ScreenShadows {
       const nearness = octaves.negate().exp2().max(end.nearness)
       rarity.assign(rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
     })
-    return { rarity, least, octaves, passes }
+    return { rarity, least, octaves, passes, isSeen }
   }
 
   /** 1/τ² up to the end of a ray. Ground of the planet before which nothing is drawn is told from the sky beside it. */
