@@ -66,7 +66,7 @@ async function lostIn(
       arrives(distance)
   shafts.add({ castInto: () => ({ transmittance }) })
   const octavesAt = (at: Vec2): Float => log2(distanceAt(at))
-  const foreground = { isDrawn: true, tolerance: 0, octavesAt, transmittanceAt }
+  const foreground = { isDrawn: true, octavesAt, transmittanceAt }
   const screen = shafts.upTo(depth, foreground)
   await set.draw()
   const pipeline = new RenderPipeline(renderer)

@@ -119,7 +119,7 @@ gpuTest(
   async t => {
     const renderer = await t.createRenderer({ width: 8, height: 8 })
     const [width, height, part] = [48, 30, 0.25]
-    const grid = new LostLightGrid()
+    const grid = new LostLightGrid(false)
     grid.resize(width, height, 2)
     grid.setAir(1, 1, 0, 6.36e6)
     const least = float(0) as Float
@@ -146,7 +146,7 @@ gpuTest(
       renderer,
       // Nearer than all.
       places.map(([x, y]) => [x, y, 1, 0]),
-      ({ x, y, z }) => vec4(grid.read(vec2(x, y), airTo(z), null, litTo), 0)
+      ({ x, y, z }) => vec4(grid.read(vec2(x, y), airTo(z), litTo), 0)
     )
     places.forEach((at, i) => {
       expectClose(results[4 * i], part * 1e-4, { relative: 2e-3 }, `at ${at.join(', ')}`)

@@ -14,6 +14,7 @@ import {
   type Vec4
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
+import { nearness, ROUGH, SIMILAR } from './tsl/nearness'
 import { depthOf, rarityAt, shownOf } from './tsl/rarity'
 import { FAR } from './tsl/without'
 
@@ -37,11 +38,8 @@ const APART_DEPTH = 6e4
  */
 const STEEP_LIMIT = 600
 
-/** Octaves of the light of clear air by which pixels differ that weigh half as much as those that have the same. Greater: halos at silhouettes. */
-const SIMILAR = 0.02
-
-/** Octaves of depth by which pixels differ at least that much, however alike their light is. Smaller: ground at the horizon has the sky's. */
-const DISTINCT = 0.25
+/** Part of a pixel's light that means may take before clouds: where it is more, its own air is looked up. Greater: blue blotches before far clouds in snow (*snowShower* under a low sun). */
+const MOST_SURE = 0.9
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
@@ -78,10 +76,10 @@ const ASIDE = 0.02
 const partedLight = (light: Vec3): Vec3 =>
   light.max(luminance(light).max(MIN_LIGHT).mul(PALE)).toConst()
 
-/** First or last in each direction, of four by their number. */
-function cornerOf(index: Int): Vec2 {
-  const row = float(index).div(2).floor().toConst()
-  return vec2(float(index).sub(row.mul(2)), row)
+/** Column and row in a square of so many, by number. */
+function cellOf(index: Int, columns: number): Vec2 {
+  const row = float(index).div(columns).floor().toConst()
+  return vec2(float(index).sub(row.mul(columns)), row).toConst()
 }
 
 /** Air of a ray, as far as a picture shows it. */
@@ -90,6 +88,8 @@ export interface SeenAir {
   readonly rarity: Float
   /** That of the ray without end. */
   readonly least: Float
+  /** True where a foreground is seen; left out, nowhere. */
+  readonly isSeen?: Bool
 }
 
 /** Light of a ray, linear sRGB of about that for unit irradiance. */
@@ -109,8 +109,11 @@ export interface LostLight extends SeenAir {
  * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
  * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of
  * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and of four beside
- * silhouettes and edges of clouds. Those that are alike in light and depth count most. One that is farther than all loses light up to their depth:
+ * silhouettes. Those that are alike in light and depth count most. One that is farther than all loses light up to their depth:
  * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
+ *
+ * Edges of clouds are everywhere, and in their shade next to nothing is left of the light: four would show as squares. There the second pass
+ * blends parts with those of the eight around, so that four hold all places of samples, weighted by their place too.
  *
  * A depth is log₂ of the optical path of clear air, which thins out with height, that has as much light as is seen: clouds hide some of it.
  * It is a measure, no more: a pixel finds 1/τ², which needs no root and no quotient.
@@ -140,7 +143,8 @@ export class LostLightGrid {
   #passes: readonly FragmentPass[] = []
   #compiled = -1
 
-  constructor() {
+  /** @param isBlended - True if pixels that are marched share parts of light with those around at their depth, for pictures with clouds. */
+  constructor(readonly isBlended: boolean) {
     this.#marched = tableTarget('Welkin.LightShafts', 1, 1, 2)
     this.target = tableTarget('Welkin.LightShafts', 1, 1)
     const [lost, parts] = this.#marched.textures
@@ -216,13 +220,16 @@ export class LostLightGrid {
       sampleLevel0(source, place.clamp(vec2(0.5), size.sub(0.5)).div(size)).toConst()
     If(texel.x.greaterThan(size.x.add(1.5)), () => {
       const place = texel.sub(vec2(size.x.add(1.5), -0.5)).toConst() as Vec2
-      result.assign(vec4(read(this.#parts, place).rgb, read(this.#lost, place).w))
+      const own = read(this.#lost, place).w
+      const parts = read(this.#parts, place).rgb.toVar() as Vec3
+      if (this.isBlended) parts.assign(this.#blended(place, own, read))
+      result.assign(vec4(parts, own))
     }).Else(() => {
       // Depth, light of the air, light that is lost.
       const least = vec3(APART_DEPTH).toVar()
       const most = vec3(-APART_DEPTH).toVar()
       loop('corner', 4, index => {
-        const at = texel.add(cornerOf(index)).sub(0.5).toConst() as Vec2
+        const at = texel.add(cellOf(index, 2)).sub(0.5).toConst() as Vec2
         const lost = read(this.#lost, at)
         result.addAssign(lost.mul(0.25))
         const each = vec3(lost.w, read(this.#parts, at).w, luminance(lost.rgb)).toConst()
@@ -237,6 +244,21 @@ export class LostLightGrid {
       result.w.assign(isLit.select(LIT_DEPTH, marked))
     })
     return result
+  }
+
+  /** Parts of a pixel and of the eight around that are as deep: places of samples count a quarter each. */
+  #blended(place: Vec2, own: Float, read: (source: TextureNode, place: Vec2) => Vec4): Vec3 {
+    const rarity = rarityAt(own)
+    const sums = vec4(0).toVar()
+    loop('beside', 9, index => {
+      const step = cellOf(index, 3).sub(1).toConst() as Vec2
+      const at = place.add(step).toConst() as Vec2
+      const shares = step.abs().negate().add(2)
+      const near = nearness(rarity, own, read(this.#lost, at).w, ROUGH)
+      const weight = near.mul(near).mul(shares.x).mul(shares.y)
+      sums.addAssign(vec4(read(this.#parts, at).rgb, 1).mul(weight))
+    })
+    return sums.rgb.div(sums.a)
   }
 
   /** 1/τ² of a ray without end; `cosView` is the cosine of its angle from the zenith. */
@@ -266,47 +288,44 @@ export class LostLightGrid {
    *
    * @param at - Its place in the picture.
    * @param seen - Its air.
-   * @param tolerance - Octaves by which its depth may be off: it is as near to those around as that allows. Null is none.
    * @param lit - Light of its air up to a distance [m]. Called in a branch.
+   * @param shown - Light of all that the pixel shows, of which it loses no greater a part than its air does of its own.
    */
-  read(
-    at: Vec2,
-    { rarity, least }: SeenAir,
-    tolerance: Float | null,
-    lit: (distance: Float) => Vec3
-  ): Vec3 {
+  read(at: Vec2, seen: SeenAir, lit: (distance: Float) => Vec3, shown?: Vec3): Vec3 {
+    const { rarity, least, isSeen } = seen
     const middle = at.mul(this.#scale).add(this.#offset).toConst() as Vec2
     // Light that is lost, and depth.
     const mean = sampleLevel0(this.#texels, middle).toConst()
     const own = depthOf(rarity)
-    const moved = (depth: Float): Float =>
-      tolerance ? depth.sub(own).clamp(tolerance.negate(), tolerance).toConst() : float(0)
     const known = shownOf(rarity)
-    // The tangent: it moves little.
-    const slope = known.mul(known).oneMinus().mul(Math.LN2)
-    const part = tolerance ? known.mul(slope.mul(moved(mean.w)).add(1)) : known
-    const lost = mean.rgb.mul(part.div(LIGHT_SCALE)).toVar() as Vec3
+    const lost = mean.rgb.mul(known.div(LIGHT_SCALE)).toVar() as Vec3
     const isOff = (depth: Float | number): Bool => mean.w.sub(depth).abs().greaterThan(NEAR_MEAN)
-    If(isOff(own).and(isOff(LIT_DEPTH)), () => {
+    const isUnlike = isOff(own).and(isOff(LIT_DEPTH))
+    const excess = shown && lost.sub(shown.mul(MOST_SURE)).toConst()
+    const isMuch = excess?.x.max(excess.y).max(excess.z).greaterThan(0)
+    If(isMuch && isSeen ? isUnlike.or(isSeen.and(isMuch)) : isUnlike, () => {
       const size = this.#gridSize
       const place = middle.div(this.#texelSize).sub(1).toConst() as Vec2
+      const corner = place.floor().toConst() as Vec2
       const isSteep = mean.w.lessThan(STEEP_LIMIT)
-      const first = isSteep.select(place, place.floor().add(0.5)).toConst() as Vec2
-      // Steps of a depth show where the nearest to it counts for more than others.
-      const similar = (tolerance ?? float(0)).mul(2).max(SIMILAR).toConst()
-      const even = similar.mul(similar).toConst()
+      // A grid that is not blended mixes places of samples here: as the sampler does where light is steep, else by a quarter each.
+      const first = (
+        this.isBlended ? corner.add(0.5) : isSteep.select(place, corner.add(0.5))
+      ).toConst() as Vec2
       // Light, and depth.
       const sums = vec4(0).toVar()
       const weights = float(0).toVar()
       loop('corner', 4, index => {
-        const texel = first.add(cornerOf(index)).clamp(vec2(0.5), size.sub(0.5))
+        const step = cellOf(index, 2)
+        const texel = first.add(step).clamp(vec2(0.5), size.sub(0.5))
         const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
         const other = sampleLevel0(this.#texels, at).toConst()
-        const light = rarity.add(1).div(rarityAt(other.w).add(1)).log2().mul(0.5)
-        const apart = other.w.sub(own).abs().min(DISTINCT).max(light.abs()).toConst()
-        const near = apart.mul(apart).add(even).reciprocal().toConst()
-        // Else what is beside clouds, whose depths are rough, has a part of those that are far from its own.
-        const weight = tolerance ? tolerance.greaterThan(0).select(near.mul(near), near) : near
+        const near = nearness(rarity, own, other.w, this.isBlended ? ROUGH : SIMILAR)
+        const weight = near.toVar()
+        if (this.isBlended) {
+          const shares = place.sub(corner).sub(step).abs().oneMinus().toConst() as Vec2
+          weight.mulAssign(near.mul(shares.x).mul(shares.y))
+        }
         sums.addAssign(other.mul(weight))
         weights.addAssign(weight)
       })
@@ -316,8 +335,9 @@ export class LostLightGrid {
         .add(2 * SAME_DEPTH)
         .toConst()
       const most = farther.lessThan(SAME_DEPTH).select(sums.w.add(farther.max(0)), LIT_DEPTH)
-      const depth = own.add(moved(sums.w)).min(most).toConst() as Float
+      const depth = own.min(most).toConst() as Float
       lost.assign(partedLight(lit(this.#distanceAt(depth, least))).mul(sums.rgb))
+      if (shown) lost.assign(lost.min(shown.mul(sums.rgb.max(0))))
     })
     return lost
   }

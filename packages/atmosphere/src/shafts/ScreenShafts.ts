@@ -34,8 +34,6 @@ const CLEAR = 0.99
 
 /** Air of a pixel. */
 interface Seen extends SeenAir {
-  /** Octaves by which its depth may be off. */
-  readonly tolerance: Float | null
   /** log₂ of the distance of a foreground [m], and the part of the light that passes it. */
   readonly octaves?: Float
   readonly passes?: Float
@@ -65,7 +63,7 @@ export class ScreenShafts implements ScreenShadows {
   readonly foreground: ForegroundLayer | undefined
   readonly #shafts: CameraShafts
   readonly #rays: DepthRays
-  readonly grid = new LostLightGrid()
+  readonly grid: LostLightGrid
   /** 1 if there is a medium, such as fog, in the light of the shafts. */
   readonly #hasMedia = number()
   /** `strengthNow`; 0 while the node of a foreground layer draws the shafts. */
@@ -83,6 +81,7 @@ export class ScreenShafts implements ScreenShadows {
     readonly isMesh = false
   ) {
     this.foreground = foreground
+    this.grid = new LostLightGrid(foreground !== undefined)
     this.#shafts = shafts
     this.#rays = new DepthRays(depthNode, shafts.camera)
   }
@@ -147,10 +146,11 @@ export class ScreenShafts implements ScreenShadows {
     return this.isMesh ? screenUV : uv()
   }
 
-  #lostUpTo(end: RayEnd, transmittance?: Float): Vec3 {
+  #lostUpTo(end: RayEnd, transmittance?: Float, shown?: Vec3): Vec3 {
     const at = this.#place
-    const seen = this.#seenAt(at, end, true, transmittance)
-    const lost = this.grid.read(at, seen, seen.tolerance, this.#lightOn(this.#rayTo(end)))
+    const seen = this.#seenAt(at, end, transmittance)
+    const lit = this.#lightOn(this.#rayTo(end))
+    const lost = this.grid.read(at, seen, lit, shown?.div(this.#gain).toConst())
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -165,7 +165,7 @@ export class ScreenShafts implements ScreenShadows {
     if (this.#isDrawnByForeground) return left
     If(this.#strength.greaterThan(0), () => {
       const lost = Fn(({ renderer }): Vec3 =>
-        this.#lostUpTo(this.#endIn(renderer, this.#place), transmittance)
+        this.#lostUpTo(this.#endIn(renderer, this.#place), transmittance, left)
       )()
       // Clouds may also give light.
       left.subAssign(lost.min(left))
@@ -174,22 +174,21 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. */
-  #seenAt(at: Vec2, end: RayEnd, isRough: boolean, transmittance?: Float): Seen {
+  #seenAt(at: Vec2, end: RayEnd, transmittance?: Float): Seen {
     const { foreground, grid } = this
     const least = grid.leastRarity(end.cosView)
     const whole = this.#rarityOf(end, least)
-    if (foreground === undefined) return { rarity: whole, least, tolerance: null }
+    if (foreground === undefined) return { rarity: whole, least }
     const passes = transmittance ?? foreground.transmittanceAt(at)
     const isSeen = passes.lessThan(CLEAR).toConst()
     const octaves = float(FAR_OCTAVES).toVar()
     const rarity = whole.add(this.#isForward.mul(UNSEEN_RARITY)).toVar()
     If(isSeen, () => {
-      octaves.assign(foreground.octavesAt(at, isRough))
+      octaves.assign(foreground.octavesAt(at))
       const nearness = octaves.negate().exp2().max(end.nearness)
       rarity.assign(rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
     })
-    const tolerance = isSeen.select(foreground.tolerance, 0).toConst() as Float
-    return { rarity, least, tolerance, octaves, passes }
+    return { rarity, least, octaves, passes, isSeen }
   }
 
   /** 1/τ² up to the end of a ray. Ground of the planet before which nothing is drawn is told from the sky beside it. */
@@ -205,7 +204,7 @@ export class ScreenShafts implements ScreenShadows {
     const end = this.#endIn(renderer, at)
     const ray = this.#rayTo(end)
     const { distance } = ray
-    const { octaves, passes, rarity, least } = this.#seenAt(at, end, false)
+    const { octaves, passes, rarity, least } = this.#seenAt(at, end)
     const { isOrthographicCamera } = this.#shafts.camera as OrthographicCamera
     const start = isOrthographicCamera
       ? view.toMapped(vec3(this.#rays.position(renderer, at, float(0.5)).xy, 0))

@@ -12,15 +12,12 @@ import type { SkyLayer } from './SkyLayer'
 export interface ForegroundLayer {
   /** False while it is not drawn. */
   readonly isDrawn: boolean
-  /** Octaves by which its rough distance may be off: half a step of it, and more. */
-  readonly tolerance: number
   /**
-   * log₂ of its distance [m].
+   * log₂ of its distance [m]: of that up to which air is in its light.
    *
    * @param at - Place in the picture, as texture coordinates.
-   * @param isRough - True for what takes one read: it may be kept in steps.
    */
-  octavesAt(at: Vec2, isRough: boolean): Float
+  octavesAt(at: Vec2): Float
   /** Part of the light from behind that passes, in [0, 1]. */
   transmittanceAt(at: Vec2): Float
 }

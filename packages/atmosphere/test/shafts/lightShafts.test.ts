@@ -217,7 +217,6 @@ describe('what is added to light shafts', () => {
         drawn++
         return true
       },
-      tolerance: 0,
       octavesAt: () => float(1),
       transmittanceAt: () => float(1)
     }

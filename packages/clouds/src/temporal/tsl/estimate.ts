@@ -28,6 +28,10 @@ const LEAST_WEIGHT = 1 / SAMPLE_STEPS
  */
 const OWN_SAMPLE = 0.5
 
+/** Greatest deviation of four numbers from their mean, in standard deviations, and the greatest transmittance of corners whose distances are mixed. */
+const MOST_ABOVE = Math.sqrt(3)
+const MOST_PASSED = 0.9
+
 /** Square of a distance beyond any corner [marched pixels²]. */
 const NO_CORNER = 100
 
@@ -37,7 +41,7 @@ const UNKNOWN = 100
 /** Estimate of a pixel from this frame's marched pixels alone. */
 export interface Estimate extends Neighbourhood {
   readonly light: Vec4
-  /** log₂ of the clouds' distance: the mean of the cell, but that of a marched pixel there. */
+  /** log₂ of the clouds' distance: mixed as the light is, or the mean of a cell with clear corners. */
   readonly distance: Float
   /** Samples that it is worth, in (0, 1]: 1 at a marched pixel. */
   readonly weight: Float
@@ -169,10 +173,12 @@ export function estimate(
   })
   const weight = nearest.mul(frame.block).mul(frame.block).mul(-WEIGHT_SHARPNESS).exp().toConst()
   const isOwn = weight.greaterThan(OWN_SAMPLE).toConst() as Bool
-  // At edges of near clouds before far ones the cell's mean is the distance of neither.
-  If(isOwn.and(isWhole).and(light.w.lessThan(CLEAR)), () => {
-    const own = marched.distances.sample(at(corner.add(kernel.blend.round()))).level(0)
-    distance.assign(own.x)
+  // At edges of near clouds before far ones the cell's mean is the distance of neither: it is mixed as light is, where all corners see clouds.
+  const { y: passed, w: deviation } = cell.light
+  const isFilled = deviation.mul(MOST_ABOVE).add(passed).lessThan(MOST_PASSED)
+  If(isOwn.or(isFilled).and(isWhole).and(light.w.lessThan(CLEAR)), () => {
+    const place = isOwn.select(kernel.blend.round(), kernel.blend)
+    distance.assign(marched.distances.sample(at(corner.add(place))).level(0).x)
   })
   return {
     light,

@@ -60,11 +60,13 @@ function accumulate(
     const isOwn = now.isOwn.or(history.samples.lessThan(1)).toConst() as Bool
     const weight = isOwn.select(now.weight, 0).toConst()
     const all = history.samples.add(weight).toConst()
-    light.assign(mix(clipped, now.light, weight.div(all)))
+    const share = weight.div(all).toConst() as Float
+    light.assign(mix(clipped, now.light, share))
     samples.assign(all.min(frame.maxSamples))
-    // Clouds that this frame does not see are where they were.
-    If(history.hasClouds.and(isOwn.not().or(now.light.w.greaterThan(CLEAR))), () => {
-      distance.assign(history.distance)
+    // Clouds that this frame does not see are where they were; a distance is of all the light that is shown.
+    If(history.hasClouds, () => {
+      const known = now.light.w.greaterThan(CLEAR).select(0, share)
+      distance.assign(mix(history.distance, distance, known))
     })
   })
 }
