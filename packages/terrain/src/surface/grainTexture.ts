@@ -118,16 +118,12 @@ function addBlade(
   const bend = (random() - 0.5) * (1.8 / length)
   const width = BLADE_WIDTH * (0.5 + 0.6 * random())
   const brightness = random() < DRY_BLADES ? DRY_LIGHT : 0.42 + 0.3 * random()
-  let [stepX, stepY] = [STEP * Math.cos(turn), STEP * Math.sin(turn)]
-  const [cosine, sine] = [Math.cos(STEP * bend), Math.sin(STEP * bend)]
   for (let step = 0; step < length; step += STEP) {
     const part = step / length
     addSpot(light, x, y, width * (1 - part ** 2), brightness * (0.62 + 0.38 * part))
-    x += stepX
-    y += stepY
-    const turned = stepX * cosine - stepY * sine
-    stepY = stepX * sine + stepY * cosine
-    stepX = turned
+    x += STEP * Math.cos(turn)
+    y += STEP * Math.sin(turn)
+    turn += STEP * bend
   }
 }
 
