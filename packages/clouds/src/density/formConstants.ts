@@ -96,7 +96,7 @@ export const billowForm = {
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
   coarse: 0.76,
   fine: 1.55,
-  detail: 0.44,
+  detail: 0.4,
   /** Change of the same from a layer's base to its top, about their mean [–]. 0: bases like tops (*Cumulus*). */
   coarseGrowth: 0.337,
   fineGrowth: 0.2,
@@ -105,7 +105,7 @@ export const billowForm = {
    * over which that begins to count: near the base small clouds are bulges alone. Lower: heads without stems float beside towers; higher:
    * smooth towers (*Cumulus*).
    */
-  bulgeFrom: [-1.8, -0.6],
+  bulgeFrom: [-1.88, -0.68],
   bulgeAbove: [0.3, 1],
   /**
    * Strength from which on fine billows are whole, and range below it over which they set in [–]: bodies have
