@@ -6,7 +6,7 @@ export const optics = [
       'from an aeroplane over a bright deck, the sun behind: its shadow, and about it coloured rings of 1 to 4°, red outside',
     clouds: {
       preset: 'overcast',
-      layer: { density: 0.006, shapeAmount: 0.25, edgeSoftness: 0.6 }
+      layer: { density: 0.006, shapeAmount: 0.25, edgeSoftness: 0.6, baseRelief: 0 }
     },
     shafts: true,
     aeroplane: true,
@@ -25,7 +25,7 @@ export const optics = [
       'the same deck with a wide lens: the glory in the middle, about it a pale bow of 40°, on all sides',
     clouds: {
       preset: 'overcast',
-      layer: { density: 0.004, shapeAmount: 0.25, edgeSoftness: 0.6 }
+      layer: { density: 0.004, shapeAmount: 0.25, edgeSoftness: 0.6, baseRelief: 0 }
     },
     dropletRadius: 12,
     altitude: 2600,

@@ -23,7 +23,7 @@ export interface View {
 }
 
 /** The thinner a deck is, the more of its light is scattered once; the evener it is, the rounder are its rings. */
-const evenDeck = { density: 0.004, shapeAmount: 0.25, edgeSoftness: 0.6 }
+const evenDeck = { density: 0.004, shapeAmount: 0.25, edgeSoftness: 0.6, baseRelief: 0 }
 
 /** Skies, and where the camera looks. */
 export const VIEWS = {
