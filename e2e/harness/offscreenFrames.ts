@@ -7,12 +7,17 @@ const INTERVAL = 5
  */
 export function requestOffscreenFrames(): void {
   let requests = new Map<number, FrameRequestCallback>()
+  /** Requests of the frame that is being called back. */
+  let current: typeof requests = new Map()
+  let isTimed = false
   let count = 0
 
   const callBack = (): void => {
-    const current = requests
+    isTimed = false
+    current = requests
     requests = new Map()
     const time = performance.now()
+    // Those that one of them cancels are left out, as a browser does.
     for (const request of current.values()) {
       try {
         request(time)
@@ -23,9 +28,13 @@ export function requestOffscreenFrames(): void {
   }
 
   globalThis.requestAnimationFrame = request => {
-    if (requests.size === 0) setTimeout(callBack, INTERVAL)
+    if (!isTimed) setTimeout(callBack, INTERVAL)
+    isTimed = true
     requests.set(++count, request)
     return count
   }
-  globalThis.cancelAnimationFrame = handle => void requests.delete(handle)
+  globalThis.cancelAnimationFrame = handle => {
+    requests.delete(handle)
+    current.delete(handle)
+  }
 }

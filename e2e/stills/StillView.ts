@@ -206,7 +206,13 @@ export class StillView {
         precipitation: fallOf(layers)
       })
       const source = still.moon && moonlight?.source
-      Object.assign(key.shadow, { shadowNode: cloudShadow(node, landShadow(key), source) })
+      Object.assign(key.shadow, {
+        shadowNode: cloudShadow(
+          node,
+          landShadow(key, still.land === 'hills' || still.land === 'snow'),
+          source
+        )
+      })
       cloudSkyLight(sky, node)
       shafts?.add(cloudAirShadow(node))
       if (still.aeroplane) shafts?.add(aeroplaneShadow())

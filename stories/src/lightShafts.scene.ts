@@ -131,7 +131,10 @@ export async function createLightShafts(
     // #shown const preset = 'stratocumulus'
     const layers = cloudPreset(preset)
     const deck = clouds(lit, depth, camera, atmosphere, layers)
-    const shadows = cloudShadow(deck, landShadow(light), light.source)
+    // #shown import { shadow } from 'three/tsl'
+    // #shown const onLand = shadow(light)
+    const onLand = landShadow(light, view.land === 'hills') // #hidden
+    const shadows = cloudShadow(deck, onLand, light.source)
     Object.assign(light.shadow, { shadowNode: shadows }) // clouds shade the land
     cloudSkyLight(sky, deck)
     shafts.add(cloudAirShadow(deck)) // and the air

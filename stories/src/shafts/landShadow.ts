@@ -51,8 +51,17 @@ export function castLandShadow<L extends SunDirectionalLight | MoonDirectionalLi
   return light
 }
 
-/** Shadows of a light that has a map by {@link castLandShadow}: of all the land, and finer ones of what stands near by. */
-export function landShadow(light: SunDirectionalLight | MoonDirectionalLight): Node<'float'> {
+/**
+ * Shadows of a light that has a map by {@link castLandShadow}: of all the land, and finer ones of plants near by.
+ *
+ * @param hasPlants - True where such plants are.
+ */
+export function landShadow(
+  light: SunDirectionalLight | MoonDirectionalLight,
+  hasPlants: boolean
+): Node<'float'> {
+  const far = shadow(light) as unknown as Node<'float'>
+  if (!hasPlants) return far
   const { shadow: near } = new DirectionalLight()
   near.mapSize.setScalar(NEAR_TEXELS)
   near.normalBias = NEAR_BIAS
@@ -62,6 +71,5 @@ export function landShadow(light: SunDirectionalLight | MoonDirectionalLight): N
   camera.far = 3 * LIGHT_DISTANCE
   camera.layers.set(NEAR_LAYER)
   light.addEventListener('dispose', () => near.dispose())
-  const [far, fine] = [shadow(light), shadow(light, near)] as unknown as Node<'float'>[]
-  return far.mul(fine)
+  return far.mul(shadow(light, near) as unknown as Node<'float'>)
 }

@@ -32,8 +32,8 @@ const EVERY = 2
 const BLUR = 6
 const LIKE = 1.2
 
-/** Pictures for each that the grid is drawn for: its tiles are wide, and what is seen stays about the same over a few. */
-const PICTURES = 2
+/** Pictures from one drawing of the grid to the next: its tiles are wide, and what is seen changes little over a few. */
+const DRAWN_EVERY = 2
 
 /** log2 of luminance that stays as it is: middle grey. */
 const KEY = Math.log2(0.17)
@@ -142,7 +142,7 @@ export class LocalExposure {
 
   /** Keeps the picture that was just drawn in a luminance scale, one of two, unless the next one is shown as it is. */
   update(renderer: Renderer, luminanceScale: number): void {
-    if (this.#strength.value === 0 || this.#pictures++ % PICTURES !== 0) return
+    if (this.#strength.value === 0 || this.#pictures++ % DRAWN_EVERY !== 0) return
     this.#kept = luminanceScale
     this.#passes[0].render(renderer, this.#cells)
     this.#passes[1].render(renderer, this.#grid)

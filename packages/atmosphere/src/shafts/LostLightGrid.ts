@@ -14,7 +14,7 @@ import {
   type Vec4
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
-import { nearness, ROUGH, SIMILAR } from './tsl/nearness'
+import { depthWeight, ROUGH, SIMILAR } from './tsl/depthWeight'
 import { depthOf, rarityAt, shownOf } from './tsl/rarity'
 import { FAR } from './tsl/without'
 
@@ -38,8 +38,8 @@ const APART_DEPTH = 6e4
  */
 const STEEP_LIMIT = 600
 
-/** Part of a pixel's light that means may take before clouds: where it is more, its own air is looked up. Greater: blue blotches before far clouds in snow (*snowShower* under a low sun). */
-const MOST_SURE = 0.9
+/** Greatest part of a pixel's light that means may take before clouds; for more its own air is looked up. Greater: blue blotches before far clouds in snow (*snowShower* under a low sun). */
+const MOST_OF_SHOWN = 0.9
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
@@ -112,8 +112,8 @@ export interface LostLight extends SeenAir {
  * silhouettes. Those that are alike in light and depth count most. One that is farther than all loses light up to their depth:
  * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
  *
- * Edges of clouds are everywhere, and in their shade next to nothing is left of the light: four would show as squares. There the second pass
- * blends parts with those of the eight around, so that four hold all places of samples, weighted by their place too.
+ * In the shade of clouds next to nothing is left of the light: four would show as squares. So grids for pictures with clouds (`isBlended`) blend
+ * parts of light in the second pass, each pixel's with those of the eight around, and weight four by their place too.
  *
  * A depth is log₂ of the optical path of clear air, which thins out with height, that has as much light as is seen: clouds hide some of it.
  * It is a measure, no more: a pixel finds 1/τ², which needs no root and no quotient.
@@ -254,7 +254,7 @@ export class LostLightGrid {
       const step = cellOf(index, 3).sub(1).toConst() as Vec2
       const at = place.add(step).toConst() as Vec2
       const shares = step.abs().negate().add(2)
-      const near = nearness(rarity, own, read(this.#lost, at).w, ROUGH)
+      const near = depthWeight(rarity, own, read(this.#lost, at).w, ROUGH)
       const weight = near.mul(near).mul(shares.x).mul(shares.y)
       sums.addAssign(vec4(read(this.#parts, at).rgb, 1).mul(weight))
     })
@@ -301,7 +301,7 @@ export class LostLightGrid {
     const lost = mean.rgb.mul(known.div(LIGHT_SCALE)).toVar() as Vec3
     const isOff = (depth: Float | number): Bool => mean.w.sub(depth).abs().greaterThan(NEAR_MEAN)
     const isUnlike = isOff(own).and(isOff(LIT_DEPTH))
-    const excess = shown && lost.sub(shown.mul(MOST_SURE)).toConst()
+    const excess = shown && lost.sub(shown.mul(MOST_OF_SHOWN)).toConst()
     const isMuch = excess?.x.max(excess.y).max(excess.z).greaterThan(0)
     If(isMuch && isSeen ? isUnlike.or(isSeen.and(isMuch)) : isUnlike, () => {
       const size = this.#gridSize
@@ -320,7 +320,7 @@ export class LostLightGrid {
         const texel = first.add(step).clamp(vec2(0.5), size.sub(0.5))
         const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
         const other = sampleLevel0(this.#texels, at).toConst()
-        const near = nearness(rarity, own, other.w, this.isBlended ? ROUGH : SIMILAR)
+        const near = depthWeight(rarity, own, other.w, this.isBlended ? ROUGH : SIMILAR)
         const weight = near.toVar()
         if (this.isBlended) {
           const shares = place.sub(corner).sub(step).abs().oneMinus().toConst() as Vec2

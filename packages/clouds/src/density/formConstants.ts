@@ -101,11 +101,11 @@ export const billowForm = {
   coarseGrowth: 0.337,
   fineGrowth: 0.2,
   /**
-   * Strength of a column, less what a height needs, over which coarse billows come to bulge out of it [–]; and needed strength
-   * over which that begins to count: near the base small clouds are bulges alone. Lower: heads without stems float beside towers; higher:
-   * smooth towers (*Cumulus*).
+   * Strength of a column, less what a height needs, over which coarse billows come to bulge out of it [–]. Lower: heads without stems float
+   * beside towers; higher: smooth towers (*Cumulus*).
    */
   bulgeFrom: [-1.88, -0.68],
+  /** Needed strength over which that comes to count [–]: near the base small clouds are bulges alone. */
   bulgeAbove: [0.3, 1],
   /**
    * Strength from which on fine billows are whole, and range below it over which they set in [–]: bodies have

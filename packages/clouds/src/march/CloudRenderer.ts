@@ -38,7 +38,11 @@ export interface CloudScene extends ShadingContext, CastScene {
 /** @param isPacked - True if distances are bytes: see `pack`. */
 function cloudTarget(name: string, isPacked = false): RenderTarget {
   const target = tableTarget(`Welkin.Clouds${name}`, 1, 1, 2)
-  if (isPacked) target.textures[1].type = UnsignedByteType
+  const [, distances] = target.textures
+  if (isPacked) {
+    distances.type = UnsignedByteType
+    distances.magFilter = distances.minFilter = NearestFilter
+  }
   return target
 }
 

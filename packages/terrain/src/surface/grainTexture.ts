@@ -51,8 +51,9 @@ function randomNumbers(seed: number): () => number {
   }
 }
 
-/** Number of the first texel of a row, and of one in a row, of the plane that the picture repeats on. */
+/** Number of the first texel of a row; rows repeat. */
 const rowAt = (y: number): number => (y & (SIZE - 1)) * SIZE
+/** Column of a texel; columns repeat. */
 const wrapped = (x: number): number => x & (SIZE - 1)
 
 /** Sides of a stone, and its top, as planes: height in the middle, and slopes along x and y. */
@@ -163,7 +164,7 @@ function addHerb(light: Float32Array, random: () => number): void {
   }
 }
 
-/** Mean to be taken off, so that levels of detail fade to 0. */
+/** Mean, which is taken off so that levels of detail fade to 0. */
 function meanOf(values: Float32Array): number {
   let sum = 0
   for (let n = 0; n < values.length; n++) sum += values[n]

@@ -14,15 +14,13 @@ export const edgeAt = (layer: LayerNodes, height: Float): Float => {
   return low.mul(low).mul(densityForm.softerBase).add(1).div(layer.perEdge).toConst()
 }
 
-/**
- * Strength over which density rises from which on steps are longer than the layer's density asks for, and the least share of that density they
- * go by [–]. Less of either: faster, and ceilings lose their relief to streaks and grain (*Presets*, overcast).
- */
+/** Width of an edge above which steps are longer [–]. Less: faster, and ceilings lose their relief to streaks and grain (*Presets*, overcast). */
 const SOFT_EDGE = 0.8
+/** Least share of a layer's density that steps go by [–]. Less: the same. */
 const LEAST_DENSE = 0.45
 
 /**
- * Share of a layer's density at a height that steps go by before they have found more, in [0, 1]: behind soft edges density rises slowly.
+ * Share of a layer's density that steps go by until they find more, in [`LEAST_DENSE`, 1]: density rises slowly behind soft edges.
  *
  * @param height - ĥ in the layer.
  */

@@ -41,7 +41,7 @@ const UNKNOWN = 100
 /** Estimate of a pixel from this frame's marched pixels alone. */
 export interface Estimate extends Neighbourhood {
   readonly light: Vec4
-  /** log₂ of the clouds' distance: mixed as the light is, or the mean of a cell with clear corners. */
+  /** log₂ of the clouds' distance: the marched pixel's own where there is one; else mixed as the light is, or the cell's mean if a corner may be clear. */
   readonly distance: Float
   /** Samples that it is worth, in (0, 1]: 1 at a marched pixel. */
   readonly weight: Float

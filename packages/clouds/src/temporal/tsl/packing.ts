@@ -36,9 +36,10 @@ const LOW_STEPS = 8
  * @param distance - log₂ of the clouds' distance.
  * @param end - log₂ of the distance of what was drawn.
  * @param samples - Accumulated samples, in [−256, 256]; negative where there is no cloud.
+ * @param dither - In [0, 1): counts are rounded at random, right in the mean, for a clear pixel gains less than a step a frame.
  * @returns In [0, 1].
  */
-export function pack(distance: Float, end: Float, samples: Float): Vec4 {
+export function pack(distance: Float, end: Float, samples: Float, dither: Float): Vec4 {
   const octaves = vec2(distance, end)
     .sub(FIRST_OCTAVE)
     .mul(1 / OCTAVES)
@@ -51,7 +52,13 @@ export function pack(distance: Float, end: Float, samples: Float): Vec4 {
     .toConst() as Float
   const size = samples.abs().toConst() as Float
   const coarse = size.sub(FINE_SAMPLES).max(0).mul(COARSE_STEPS)
-  const code = size.min(FINE_SAMPLES).mul(SAMPLE_STEPS).add(coarse).round().mul(samples.sign())
+  const code = size
+    .min(FINE_SAMPLES)
+    .mul(SAMPLE_STEPS)
+    .add(coarse)
+    .add(dither)
+    .floor()
+    .mul(samples.sign())
   const bits = code.add(NO_SAMPLES).sub(high).mul(LOW_STEPS).add(steps).toConst() as Float
   const upper = bits
     .mul(1 / 256)

@@ -93,6 +93,7 @@ export function upscale(
     const pixel = uv().mul(frame.size).floor().toConst() as unknown as Vec2
     const middle = pixel.add(0.5).div(frame.size).toConst() as Vec2
     const where = cellPosition(viewRays, pixel)
+    const dither = interleavedNoise(pixel, frame.noiseShift).toConst() as Float
     const cellAt = where.corner.add(1.5).div(frame.marchedSize.add(1)).toConst() as Vec2
     const cellLight = cells.light.sample(cellAt).level(0).toConst() as Vec4
     const before = vec4(0).toVar() as Vec4
@@ -102,7 +103,8 @@ export function upscale(
     // Clear around and clear before: one more sample of nothing.
     const clearSamples = before.z.sub(frame.block.mul(frame.block).reciprocal())
     light.assign(vec4(0, 0, 0, 1))
-    distances.assign(pack(float(FARTHEST), before.y, clearSamples.max(frame.maxSamples.negate())))
+    const clear = clearSamples.max(frame.maxSamples.negate())
+    distances.assign(pack(float(FARTHEST), before.y, clear, dither))
     If(before.z.greaterThanEqual(0), () => {
       const cell: Cell = {
         light: cellLight,
@@ -124,8 +126,8 @@ export function upscale(
         accumulate({ light: result, samples, distance }, viewRays, now, last)
       })
       const signed = result.w.greaterThan(CLEAR).select(samples.negate(), samples)
-      light.assign(toHalf(result.max(0), interleavedNoise(pixel, frame.noiseShift)))
-      distances.assign(pack(distance, end, signed))
+      light.assign(toHalf(result.max(0), dither))
+      distances.assign(pack(distance, end, signed, dither))
     })
   })
 }
