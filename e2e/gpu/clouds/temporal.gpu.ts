@@ -203,7 +203,7 @@ gpuTest(
         const { shadows } = sky.node
         const update = shadows.update.bind(shadows)
         for (const [height, pitch, frames] of [
-          [2, 0.6, 64],
+          [2, 0.6, 80],
           [3e6, -1.3, 20]
         ]) {
           sky.camera.position.y = height
