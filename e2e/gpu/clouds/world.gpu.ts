@@ -47,7 +47,15 @@ import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
 
 const size = { width: 24, height: 16 }
-const quality: CloudQuality = { ...coarse, block: 1 }
+/** Shorter steps than `coarse` has: with those an overcast lets 3 % less light through. */
+const quality: CloudQuality = {
+  ...coarse,
+  steps: 128,
+  stepGrowth: 0.005,
+  depthStep: 0.1,
+  layerSteps: 24,
+  block: 1
+}
 
 const mean = ({ data }: Picture, channel: number): number => {
   let sum = 0
