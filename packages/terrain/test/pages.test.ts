@@ -172,6 +172,34 @@ it('bounds a tile by its page even if the source states other bounds', () => {
   expect(tree.roots[0].lowest).toBeLessThan(tree.roots[0].highest)
 })
 
+it('asks for what the next frame draws while it draws this one', async () => {
+  const asked: number[] = []
+  const { pages, tree } = pagesOf(
+    sourceOf(({ side, level }) => {
+      if (level > 0) asked.push(level)
+      return level > 0 ? Promise.resolve(flat(side, 700)) : flat(side, 700)
+    })
+  )
+  const renderer = asRenderer(rendererOf())
+  const load = (tiles: readonly Tile[], selection: number): number => {
+    pages.begin(renderer, tree.roots, selection)
+    return pages.load(tiles, selection, 1)
+  }
+  load([], 0)
+  const tiles = tree.roots[0].split(earth, tree.source)
+  // Both are asked for, and neither is there.
+  expect(load(tiles.slice(0, 2), 1)).toBe(0)
+  expect(asked).toHaveLength(2)
+  await settle()
+  // The first is drawn, and the last two are asked for beside it.
+  expect(load(tiles.slice(0, 1).concat(tiles.slice(2)), 2)).toBe(1)
+  expect(asked).toHaveLength(4)
+  await settle()
+  // One that is there and not drawn is the last that is looked at: those after it wait.
+  expect(load([tiles[1], tiles[2], ...tree.roots[1].split(earth, tree.source)], 3)).toBe(1)
+  expect(asked).toHaveLength(4)
+})
+
 it.each([
   ['a promise of nothing', () => Promise.resolve(undefined), 'got undefined'],
   ['a promise of null', () => Promise.resolve(null), 'got null'],
