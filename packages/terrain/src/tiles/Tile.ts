@@ -10,6 +10,8 @@ const corner = new Vector3()
 
 /** A tile of the quadtree on a face of the cube about the planet. */
 export class Tile {
+  /** Half width on the cube of half width 1: a power of two. */
+  readonly extent: number
   /** Point of the cube of half width 1 above the tile's centre. */
   readonly cube: Vector3
   /** Centre on the ellipsoid, ECEF [m]. */
@@ -63,11 +65,12 @@ export class Tile {
     source: GroundBounds,
     readonly parent: Tile | null = null
   ) {
+    const extent = 2 ** -level
+    this.extent = extent
     const { outward, first, second } = faceAxes(face)
     this.cube = outward.clone().addScaledVector(first, x).addScaledVector(second, y)
     this.center = cubeToFigure(this.cube, figure, new Vector3())
     this.normal = figure.surfaceNormal(this.center)
-    const { extent } = this
     let square = 0
     for (const [i, j] of CORNERS) {
       corner
@@ -98,11 +101,6 @@ export class Tile {
     const variation = source.variation(1.12 * this.radius)
     this.lowest = Math.max(lowest, height - variation)
     this.highest = Math.min(highest, height + variation)
-  }
-
-  /** Half width on the cube of half width 1: a power of two. */
-  get extent(): number {
-    return 2 ** -this.level
   }
 
   /** Fades its page, if there is one, further in over the parent's; once in a frame unless at once. */

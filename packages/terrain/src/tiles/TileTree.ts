@@ -85,7 +85,8 @@ export class TileTree {
     const radius = this.figure.minimumRadius
     while (open.length > 0) {
       const next: Tile[] = []
-      for (const [i, tile] of open.entries()) {
+      for (let i = 0; i < open.length; i++) {
+        const tile = open[i]
         tile.lastUse = this.selections
         const isVisible = isInFrustum(tile, viewer, radius)
         if (!isVisible && !mayCastShadow(tile, viewer)) continue
@@ -172,11 +173,15 @@ function isInFrustum(tile: Tile, viewer: Viewer, size: number): boolean {
   const across = radius * (1 + Math.max(highest, 0) / size)
   // The ground bends down by its sagitta.
   const along = (highest - lowest) / 2 + across ** 2 / size
-  return planes.every(plane => {
+  for (const plane of planes) {
+    const outside = -plane.distanceToPoint(point)
+    // Most middles are inside: no square root for them.
+    if (outside <= 0) continue
     const cosine = level < FLAT_LEVEL ? 1 : Math.abs(plane.normal.dot(normal))
     const sine = level < FLAT_LEVEL ? 1 : Math.sqrt(Math.max(1 - cosine ** 2, 0))
-    return plane.distanceToPoint(point) >= -(across * sine + along * cosine)
-  })
+    if (outside > across * sine + along * cosine) return false
+  }
+  return true
 }
 
 /** True of a tile near enough to cast shadows into view. */

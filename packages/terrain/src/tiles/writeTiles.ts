@@ -25,9 +25,9 @@ export function writeTiles(
     name => geometry.getAttribute(name) as InstancedBufferAttribute
   )
   const [base, offset, cube, page] = attributes.map(attribute => attribute.array)
-  for (const [i, tile] of tiles.entries()) {
+  let n = 0
+  for (const tile of tiles) {
     const { center, normal, level, slot, parent } = tile
-    const n = 4 * i
     point.copy(center).sub(position).addScaledVector(normal, ground).toArray(base, n)
     base[n + 3] = Math.min(ranges[level], 1e30)
     point.copy(center).sub(reference).toArray(offset, n)
@@ -40,6 +40,7 @@ export function writeTiles(
     page[n + 1] = whole
     page[n + 2] = tile.quarter
     page[n + 3] = tile.fade
+    n += 4
   }
   for (const attribute of attributes) {
     attribute.clearUpdateRanges()
