@@ -1,15 +1,13 @@
-import { DataTexture, NearestFilter, RenderTarget, type RenderTarget3D } from 'three'
 import {
-  int,
-  ivec2,
-  ivec3,
-  screenCoordinate,
-  texture3DLoad,
-  textureLoad,
-  uniform,
-  uv,
-  vec4
-} from 'three/tsl'
+  Box3,
+  Data3DTexture,
+  NearestFilter,
+  RedFormat,
+  RenderTarget,
+  Vector3,
+  type RenderTarget3D
+} from 'three'
+import { int, ivec2, ivec3, screenCoordinate, texture3DLoad, vec4 } from 'three/tsl'
 import type { Node, Renderer } from 'three/webgpu'
 import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
 import {
@@ -41,9 +39,38 @@ function levelsOf(volume: RenderTarget3D): Level[] {
   })
 }
 
+/**
+ * Texels of a level, slice by slice, from a picture of them side by side.
+ *
+ * @param isUp - True if the volume's rows go up, as those of targets do on WebGL.
+ */
+function unfold(
+  picture: Texels,
+  { size, columns, width }: Level,
+  channels: number,
+  isUp: boolean
+): Texels {
+  const texels = new Uint8Array(channels * size ** 3)
+  let to = 0
+  for (let slice = 0; slice < size; slice++) {
+    const [left, top] = [size * (slice % columns), size * Math.floor(slice / columns)]
+    for (let y = 0; y < size; y++) {
+      const row = top + (isUp ? size - 1 - y : y)
+      for (let x = 0; x < size; x++) {
+        const from = 4 * (row * width + left + x)
+        for (let channel = 0; channel < channels; channel++) texels[to++] = picture[from + channel]
+      }
+    }
+  }
+  return texels
+}
+
+const channelsOf = ({ texture }: RenderTarget3D): number => (texture.format === RedFormat ? 1 : 4)
+
 /** Keeps a volume's levels, for this page and those to come. */
 async function keep(renderer: Renderer, volume: RenderTarget3D, key: string): Promise<void> {
-  const pictures = levelsOf(volume).map(({ level, size, columns, width, height }) => {
+  const levels = levelsOf(volume).map(async each => {
+    const { level, size, columns, width, height } = each
     const options = {
       depthBuffer: false,
       minFilter: NearestFilter,
@@ -59,9 +86,10 @@ async function keep(renderer: Renderer, volume: RenderTarget3D, key: string): Pr
     )
     copy.render(renderer, picture)
     copy.dispose()
-    return readTexels<Texels>(renderer, picture).finally(() => picture.dispose())
+    const texels = await readTexels<Texels>(renderer, picture).finally(() => picture.dispose())
+    return unfold(texels, each, channelsOf(volume), !('isWebGPUBackend' in renderer.backend))
   })
-  await keepTexels(key, await Promise.all(pictures))
+  await keepTexels(key, await Promise.all(levels))
 }
 
 /** Copies kept levels into a volume, in as many steps as the library's bake takes. */
@@ -70,29 +98,18 @@ function* restore(
   volume: RenderTarget3D,
   kept: Texels
 ): Generator<number, void, void> {
+  renderer.initRenderTarget(volume)
   let offset = 0
-  for (const { level, size, columns, width, height } of levelsOf(volume)) {
-    const texels = kept.subarray(offset, (offset += 4 * size ** 3))
-    const source = new DataTexture(texels, width, height)
-    source.minFilter = source.magFilter = NearestFilter
+  for (const { level, size } of levelsOf(volume)) {
+    const texels = kept.subarray(offset, (offset += channelsOf(volume) * size ** 3))
+    const source = new Data3DTexture(texels, size, size, size)
+    source.format = volume.texture.format
     source.needsUpdate = true
-    const corner = [uniform(0, 'int'), uniform(0, 'int')]
-    // By uv: `screenCoordinate` takes a level for as large as the volume.
-    const texel = ivec2(uv().mul(size).floor()).add(ivec2(corner[0], corner[1]))
-    const copy = new FragmentPass('Reuse.noise', textureLoad(source, texel))
-    try {
-      for (let slice = 0; slice < size; slice++) {
-        corner[0].value = size * (slice % columns)
-        corner[1].value = size * Math.floor(slice / columns)
-        copy.render(renderer, volume, slice, level)
-        yield 1
-        // The library draws coarser levels outside of the volume first.
-        if (level > 0) yield 1
-      }
-    } finally {
-      copy.dispose()
-      source.dispose()
-    }
+    const all = new Box3(new Vector3(), new Vector3(size, size, size))
+    renderer.copyTextureToTexture(source, volume.texture, all, null, 0, level)
+    source.dispose()
+    // The library draws coarser levels outside of the volume first.
+    for (let step = 0; step < (level > 0 ? 2 : 1) * size; step++) yield 1
   }
 }
 
