@@ -4,6 +4,7 @@ import type { Plugin } from 'vite'
 /** Modules of the packages, by the end of their imports, and what pages of tests have in their place. */
 const replacements: Record<string, URL> = {
   '/diffuseLight/DiffuseLightTable': new URL('../gpu/harness/reuse-tables.ts', import.meta.url),
+  '/transmittance/TransmittanceTable': new URL('../gpu/harness/reuse-tables.ts', import.meta.url),
   '/noise/CloudNoise': new URL('../gpu/harness/reuse-noise.ts', import.meta.url),
   '/MoonSurfaceMap': new URL('../gpu/harness/reuse-moon.ts', import.meta.url)
 }

@@ -56,7 +56,7 @@ gpuTest('draws only light for random cameras, forward and as a post effect', asy
   const post = postPath(renderer, scene, camera, atmosphere)
   const next = random(seed)
   t.note(`seed ${seed}`)
-  for (let i = 0; i < 24; i++) {
+  for (let i = 0; i < (t.backend === 'webgpu' ? 24 : 8); i++) {
     const height = Math.exp(next() * Math.log(6.4e7))
     const place = { longitude: 360 * next() - 180, latitude: 180 * next() - 90, height }
     Ellipsoid.WGS84.geodeticToECEF(place, camera.position)
@@ -105,7 +105,7 @@ for (const depth of ['standard', 'reversed', 'logarithmic'] as const) {
     for (const isOrthographic of [false, true]) {
       // Not 20,000 km: a pixel of so small a picture spans 500 km there, and the 1/256 of it that
       // rasterizers round vertices to moves the depth by more than the air is high.
-      for (const height of [20_000, 4e5, 2e6]) {
+      for (const height of t.backend === 'webgpu' ? [20_000, 4e5, 2e6] : [4e5]) {
         const camera = cameraOver(height, isOrthographic, depth)
         const forward = await drawForward(renderer, scene, camera, atmosphere)
         const post = postPath(renderer, scene, camera, atmosphere)
@@ -163,59 +163,70 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
-gpuTest('keeps each of two cameras its own sky', async t => {
-  const renderer = await t.createRenderer(size)
-  const atmosphere = new Atmosphere()
-  const scene = new Scene()
-  const [low, high, higher] = [2, 40_000, 2e6].map(height => {
-    const camera = new PerspectiveCamera(60, 64 / 36, 1, 1e7)
-    camera.position.y = height
-    camera.updateMatrixWorld()
-    return camera
-  })
-  const draw = (camera: Camera) => drawForward(renderer, scene, camera, atmosphere)
-  const first = [await draw(low), await draw(high), await draw(higher)]
-  const again = [await draw(low), await draw(high), await draw(higher)]
-  first.forEach((picture, i) => {
-    const change = relativeDifferences(picture, again[i]).at(-1)!
-    expectTrue(change < 1e-4, `camera ${i} sees another sky: ${change}`)
-    const other = relativeDifferences(picture, first[(i + 1) % 3]).at(-1)!
-    expectTrue(other > 0.1, `camera ${i} sees the sky of another`)
-  })
-  atmosphere.dispose()
-})
+gpuTest(
+  'keeps each of two cameras its own sky',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const atmosphere = new Atmosphere()
+    const scene = new Scene()
+    const [low, high, higher] = [2, 40_000, 2e6].map(height => {
+      const camera = new PerspectiveCamera(60, 64 / 36, 1, 1e7)
+      camera.position.y = height
+      camera.updateMatrixWorld()
+      return camera
+    })
+    const draw = (camera: Camera) => drawForward(renderer, scene, camera, atmosphere)
+    const first = [await draw(low), await draw(high), await draw(higher)]
+    const again = [await draw(low), await draw(high), await draw(higher)]
+    first.forEach((picture, i) => {
+      const change = relativeDifferences(picture, again[i]).at(-1)!
+      expectTrue(change < 1e-4, `camera ${i} sees another sky: ${change}`)
+      const other = relativeDifferences(picture, first[(i + 1) % 3]).at(-1)!
+      expectTrue(other > 0.1, `camera ${i} sees the sky of another`)
+    })
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 for (const kind of ['floating origin', 'unit'] as const) {
-  gpuTest(`changes no pixel with the ${kind}`, async t => {
-    const renderer = await t.createRenderer(size)
-    const scene = new Scene()
-    const mesh = new Mesh(new SphereGeometry(1, 32, 16), new MeshStandardMaterial({ roughness: 1 }))
-    const camera = new PerspectiveCamera(60, 64 / 36, 10, 1e6)
-    const draw = (atmosphere: Atmosphere, origin: Vector3, unit: number) => {
-      camera.position.set(300, 1500, -200).sub(origin).divideScalar(unit)
-      camera.near = 10 / unit
-      camera.far = 1e6 / unit
-      camera.updateProjectionMatrix()
-      mesh.position.set(2000, 1000, -9000).sub(origin).divideScalar(unit)
-      mesh.scale.setScalar(2500 / unit)
-      return drawForward(renderer, scene, camera, atmosphere)
-    }
-    const atmosphere = new Atmosphere().place({ longitude: 10, latitude: 40 })
-    scene.add(mesh, ...lights(atmosphere))
-    atmosphere.date = new Date('2026-06-21T15:00:00Z')
-    const before = await draw(atmosphere, new Vector3(), 1)
-    const origin = kind === 'unit' ? new Vector3() : new Vector3(30_000.3, -500.7, 12_345.1)
-    const unit = kind === 'unit' ? 1000 : 1
-    if (kind === 'unit') atmosphere.metersPerUnit = unit
-    else {
-      const shifted = origin.clone().applyMatrix4(atmosphere.worldToECEF)
-      atmosphere.worldToECEF.setPosition(shifted)
-    }
-    const after = await draw(atmosphere, origin, unit)
-    const differences = relativeDifferences(before, after)
-    t.note(`worst ${differences.at(-1)!.toExponential(1)}`)
-    // A pixel or two of the silhouette may fall on its other side.
-    expectTrue(differences.at(-4)! < 1e-3, `pixels differ by ${differences.at(-4)}`)
-    atmosphere.dispose()
-  })
+  gpuTest(
+    `changes no pixel with the ${kind}`,
+    async t => {
+      const renderer = await t.createRenderer(size)
+      const scene = new Scene()
+      const mesh = new Mesh(
+        new SphereGeometry(1, 32, 16),
+        new MeshStandardMaterial({ roughness: 1 })
+      )
+      const camera = new PerspectiveCamera(60, 64 / 36, 10, 1e6)
+      const draw = (atmosphere: Atmosphere, origin: Vector3, unit: number) => {
+        camera.position.set(300, 1500, -200).sub(origin).divideScalar(unit)
+        camera.near = 10 / unit
+        camera.far = 1e6 / unit
+        camera.updateProjectionMatrix()
+        mesh.position.set(2000, 1000, -9000).sub(origin).divideScalar(unit)
+        mesh.scale.setScalar(2500 / unit)
+        return drawForward(renderer, scene, camera, atmosphere)
+      }
+      const atmosphere = new Atmosphere().place({ longitude: 10, latitude: 40 })
+      scene.add(mesh, ...lights(atmosphere))
+      atmosphere.date = new Date('2026-06-21T15:00:00Z')
+      const before = await draw(atmosphere, new Vector3(), 1)
+      const origin = kind === 'unit' ? new Vector3() : new Vector3(30_000.3, -500.7, 12_345.1)
+      const unit = kind === 'unit' ? 1000 : 1
+      if (kind === 'unit') atmosphere.metersPerUnit = unit
+      else {
+        const shifted = origin.clone().applyMatrix4(atmosphere.worldToECEF)
+        atmosphere.worldToECEF.setPosition(shifted)
+      }
+      const after = await draw(atmosphere, origin, unit)
+      const differences = relativeDifferences(before, after)
+      t.note(`worst ${differences.at(-1)!.toExponential(1)}`)
+      // A pixel or two of the silhouette may fall on its other side.
+      expectTrue(differences.at(-4)! < 1e-3, `pixels differ by ${differences.at(-4)}`)
+      atmosphere.dispose()
+    },
+    { backends: ['webgpu'] }
+  )
 }

@@ -166,46 +166,50 @@ gpuTest('lights a plane and the sky over it as float64 predicts, within 2 %', as
   atmosphere.dispose()
 })
 
-gpuTest('glows like the sky by day, a 400,000th as bright, by either path', async t => {
-  const renderer = await t.createRenderer({ width: 32, height: 32 })
-  const camera = new PerspectiveCamera(60, 1, 1, 1e6)
-  camera.position.y = 2
-  camera.rotation.x = 0.4
-  camera.updateMatrixWorld()
-  const direction = new Vector3(1, 1, 1).normalize()
-  const aboveTheAir = new Vector3(0, 1e6, 0)
-  const atmosphere = new Atmosphere()
-  atmosphere.sunDirection = direction
-  const daylight = await drawForward(renderer, new Scene(), camera, atmosphere)
-  const sunlight = luminance(sunIlluminanceAt(atmosphere, aboveTheAir))
-  atmosphere.sunDirection = new Vector3(0, -1, 0)
-  const strength = 1e5
-  const luna = moon({ direction, phase: 0.5, mapSize: 16, strength, flare: noFlare })
-  atmosphere.add(luna)
-  const moonlight = await drawForward(renderer, new Scene(), camera, atmosphere)
-  const light = luminance(moonIlluminanceAt(luna, aboveTheAir))
-  for (const [x, y] of [
-    [4, 4],
-    [16, 12],
-    [28, 20]
-  ]) {
-    const ratio = luminance(moonlight.at(x, y)) / luminance(daylight.at(x, y))
-    expectClose(ratio, light / sunlight, { relative: 0.06 }, `pixel ${x}, ${y}`)
-  }
-  const scene = new Scene()
-  const wall = new Mesh(new PlaneGeometry(6e4, 6e4), new MeshLambertMaterial({ color: 0 }))
-  wall.position.z = -30_000
-  scene.add(wall)
-  const forward = await drawForward(renderer, scene, camera, atmosphere)
-  const post = postPath(renderer, scene, camera, atmosphere)
-  const after = await post.draw()
-  for (const picture of [forward, after]) expectLight(picture, 'haze by moonlight')
-  const haze = forward.at(16, 24).slice(0, 3)
-  expectTrue(luminance(haze) > 1e-4, `haze is ${haze}`)
-  expectClose(after.at(16, 24).slice(0, 3), haze, { relative: 0.02 }, 'post path')
-  post.dispose()
-  atmosphere.dispose()
-})
+gpuTest(
+  'glows like the sky by day, a 400,000th as bright, by either path',
+  async t => {
+    const renderer = await t.createRenderer({ width: 32, height: 32 })
+    const camera = new PerspectiveCamera(60, 1, 1, 1e6)
+    camera.position.y = 2
+    camera.rotation.x = 0.4
+    camera.updateMatrixWorld()
+    const direction = new Vector3(1, 1, 1).normalize()
+    const aboveTheAir = new Vector3(0, 1e6, 0)
+    const atmosphere = new Atmosphere()
+    atmosphere.sunDirection = direction
+    const daylight = await drawForward(renderer, new Scene(), camera, atmosphere)
+    const sunlight = luminance(sunIlluminanceAt(atmosphere, aboveTheAir))
+    atmosphere.sunDirection = new Vector3(0, -1, 0)
+    const strength = 1e5
+    const luna = moon({ direction, phase: 0.5, mapSize: 16, strength, flare: noFlare })
+    atmosphere.add(luna)
+    const moonlight = await drawForward(renderer, new Scene(), camera, atmosphere)
+    const light = luminance(moonIlluminanceAt(luna, aboveTheAir))
+    for (const [x, y] of [
+      [4, 4],
+      [16, 12],
+      [28, 20]
+    ]) {
+      const ratio = luminance(moonlight.at(x, y)) / luminance(daylight.at(x, y))
+      expectClose(ratio, light / sunlight, { relative: 0.06 }, `pixel ${x}, ${y}`)
+    }
+    const scene = new Scene()
+    const wall = new Mesh(new PlaneGeometry(6e4, 6e4), new MeshLambertMaterial({ color: 0 }))
+    wall.position.z = -30_000
+    scene.add(wall)
+    const forward = await drawForward(renderer, scene, camera, atmosphere)
+    const post = postPath(renderer, scene, camera, atmosphere)
+    const after = await post.draw()
+    for (const picture of [forward, after]) expectLight(picture, 'haze by moonlight')
+    const haze = forward.at(16, 24).slice(0, 3)
+    expectTrue(luminance(haze) > 1e-4, `haze is ${haze}`)
+    expectClose(after.at(16, 24).slice(0, 3), haze, { relative: 0.02 }, 'post path')
+    post.dispose()
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest('hides the sun and dims light, sky and haze in an eclipse', async t => {
   const size = { width: 64, height: 64 }
@@ -246,34 +250,39 @@ gpuTest('hides the sun and dims light, sky and haze in an eclipse', async t => {
   atmosphere.dispose()
 })
 
-gpuTest('leaves no memory behind when it comes and goes under a sky that stays', async t => {
-  const renderer = await t.createRenderer({ width: 16, height: 16 })
-  const atmosphere = new Atmosphere().setSunAngles(-20, 90)
-  const camera = new PerspectiveCamera()
-  const scene = new Scene()
-  const background = skyBackground(atmosphere)
-  scene.backgroundNode = background
-  const memory = (): string => {
-    renderer.render(scene, camera)
-    const { programs, renderTargets, textures, texturesSize, uniformBuffers } = renderer.info.memory
-    return JSON.stringify({ programs, renderTargets, textures, texturesSize, uniformBuffers })
-  }
-  const [without, withMoon] = [[memory()], Array<string>()]
-  for (let i = 0; i < 4; i++) {
-    const luna = moon({ mapSize: 16 })
-    atmosphere.add(luna)
-    withMoon.push(memory())
-    luna.dispose()
-    without.push(memory())
-  }
-  background.dispose()
-  atmosphere.dispose()
-  t.note(`${without[0]} without, ${withMoon[0]} with it`)
-  expectTrue(withMoon[0] !== without[0], 'a moon takes no memory')
-  // What all moons share stays after the first.
-  expectTrue(new Set(without.slice(1)).size === 1, `without: ${without.join('\n')}`)
-  expectTrue(new Set(withMoon.slice(1)).size === 1, `with: ${withMoon.join('\n')}`)
-})
+gpuTest(
+  'leaves no memory behind when it comes and goes under a sky that stays',
+  async t => {
+    const renderer = await t.createRenderer({ width: 16, height: 16 })
+    const atmosphere = new Atmosphere().setSunAngles(-20, 90)
+    const camera = new PerspectiveCamera()
+    const scene = new Scene()
+    const background = skyBackground(atmosphere)
+    scene.backgroundNode = background
+    const memory = (): string => {
+      renderer.render(scene, camera)
+      const { programs, renderTargets, textures, texturesSize, uniformBuffers } =
+        renderer.info.memory
+      return JSON.stringify({ programs, renderTargets, textures, texturesSize, uniformBuffers })
+    }
+    const [without, withMoon] = [[memory()], Array<string>()]
+    for (let i = 0; i < 4; i++) {
+      const luna = moon({ mapSize: 16 })
+      atmosphere.add(luna)
+      withMoon.push(memory())
+      luna.dispose()
+      without.push(memory())
+    }
+    background.dispose()
+    atmosphere.dispose()
+    t.note(`${without[0]} without, ${withMoon[0]} with it`)
+    expectTrue(withMoon[0] !== without[0], 'a moon takes no memory')
+    // What all moons share stays after the first.
+    expectTrue(new Set(without.slice(1)).size === 1, `without: ${without.join('\n')}`)
+    expectTrue(new Set(withMoon.slice(1)).size === 1, `with: ${withMoon.join('\n')}`)
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest(
   'leaves no memory behind',

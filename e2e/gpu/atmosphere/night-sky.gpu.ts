@@ -209,37 +209,41 @@ gpuTest('draws the same stars after post-processing, behind what was drawn', asy
   expectTrue(Math.max(...onTop.at(20, 27).slice(0, 3)) === 0, 'there are stars before the card')
 })
 
-gpuTest('dims stars by fog before them, drawn last or in the sky', async t => {
-  const [width, height] = [96, 54]
-  const renderer = await t.createRenderer({ width, height })
-  const draw = async (overlay: boolean, density: number): Promise<number> => {
-    const atmosphere = new Atmosphere().setSunAngles(-60, 270)
-    atmosphere.luminanceScale = 1
-    atmosphere.add(stars({ overlay }), heightFog({ density, falloff: 300 }))
-    const camera = new PerspectiveCamera(40, width / height, 1, 1e6)
-    camera.position.y = 2
-    camera.rotation.x = 0.6
-    const scene = new Scene()
-    scene.backgroundNode = skyBackground(atmosphere)
-    const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
-    const pipeline = new RenderPipeline(renderer)
-    pipeline.outputColorTransform = false
-    const color = scenePass.getTextureNode()
-    const depth = scenePass.getTextureNode('depth')
-    pipeline.outputNode = overlay ? starsOverlay(color, depth, camera, atmosphere) : color
-    const picture = await drawToFloat(renderer, () => pipeline.render())
-    scenePass.dispose()
-    pipeline.dispose()
-    atmosphere.dispose()
-    return illuminance(picture, 40)
-  }
-  for (const density of [1e-3, 0.1]) {
-    const [inSky, onTop] = [await draw(false, density), await draw(true, density)]
-    t.note(`${density}/m: ${inSky.toExponential(2)} lx, drawn last ${onTop.toExponential(2)} lx`)
-    if (density < 0.1) expectTrue(inSky > 1e-6, `${inSky} lx of stars in thin fog`)
-    expectTrue(Math.abs(onTop - inSky) < 1e-3 * inSky + 1e-12, `${onTop}, not ${inSky} lx`)
-  }
-})
+gpuTest(
+  'dims stars by fog before them, drawn last or in the sky',
+  async t => {
+    const [width, height] = [96, 54]
+    const renderer = await t.createRenderer({ width, height })
+    const draw = async (overlay: boolean, density: number): Promise<number> => {
+      const atmosphere = new Atmosphere().setSunAngles(-60, 270)
+      atmosphere.luminanceScale = 1
+      atmosphere.add(stars({ overlay }), heightFog({ density, falloff: 300 }))
+      const camera = new PerspectiveCamera(40, width / height, 1, 1e6)
+      camera.position.y = 2
+      camera.rotation.x = 0.6
+      const scene = new Scene()
+      scene.backgroundNode = skyBackground(atmosphere)
+      const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
+      const pipeline = new RenderPipeline(renderer)
+      pipeline.outputColorTransform = false
+      const color = scenePass.getTextureNode()
+      const depth = scenePass.getTextureNode('depth')
+      pipeline.outputNode = overlay ? starsOverlay(color, depth, camera, atmosphere) : color
+      const picture = await drawToFloat(renderer, () => pipeline.render())
+      scenePass.dispose()
+      pipeline.dispose()
+      atmosphere.dispose()
+      return illuminance(picture, 40)
+    }
+    for (const density of [1e-3, 0.1]) {
+      const [inSky, onTop] = [await draw(false, density), await draw(true, density)]
+      t.note(`${density}/m: ${inSky.toExponential(2)} lx, drawn last ${onTop.toExponential(2)} lx`)
+      if (density < 0.1) expectTrue(inSky > 1e-6, `${inSky} lx of stars in thin fog`)
+      expectTrue(Math.abs(onTop - inSky) < 1e-3 * inSky + 1e-12, `${onTop}, not ${inSky} lx`)
+    }
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest('has airglow as bright as its layer is long', async t => {
   const [altitude, width, bottomRadius] = [96_000, 4000, 6_378_137]
@@ -289,41 +293,47 @@ gpuTest('has airglow as bright as its layer is long', async t => {
   t.note(`off by ${(100 * worst).toFixed(2)} % at most`)
 })
 
-gpuTest('dims stars by the air in a night that no day came before', async t => {
-  const [width, height, fov] = [96, 54, 5]
-  const renderer = await t.createRenderer({ width, height })
-  for (const elevation of [60, 10, 2]) {
-    const angle = (elevation * Math.PI) / 180
-    // At longitude and latitude 0: the zenith is X of ECEF, which is the stars' frame without a date.
-    const star: Star = {
-      ascension: Math.PI / 2 - angle,
-      declination: 0,
-      magnitude: 1,
-      colorIndex: 0
+gpuTest(
+  'dims stars by the air in a night that no day came before',
+  async t => {
+    const [width, height, fov] = [96, 54, 5]
+    const renderer = await t.createRenderer({ width, height })
+    for (const elevation of [60, 10, 2]) {
+      const angle = (elevation * Math.PI) / 180
+      // At longitude and latitude 0: the zenith is X of ECEF, which is the stars' frame without a date.
+      const star: Star = {
+        ascension: Math.PI / 2 - angle,
+        declination: 0,
+        magnitude: 1,
+        colorIndex: 0
+      }
+      const atmosphere = new Atmosphere().setSunAngles(-60, 270)
+      atmosphere.luminanceScale = 1
+      atmosphere.add(new Stars({ catalogue: [star] }))
+      const camera = new PerspectiveCamera(fov, width / height, 1, 1e6)
+      camera.position.y = 2
+      camera.lookAt(new Vector3(Math.cos(angle), Math.sin(angle), 0).add(camera.position))
+      camera.updateMatrixWorld()
+      const scene = new Scene()
+      scene.backgroundNode = skyBackground(atmosphere)
+      const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
+      const { parameters } = atmosphere
+      const radius = parameters.bottomRadius + 2
+      const length = distanceToTop(radius, Math.sin(angle), parameters.topRadius)
+      const depth = opticalDepth(parameters, radius, Math.sin(angle), length)
+      const light = starIrradiance(parameters, 0, VEGA * 10 ** -0.4)
+      const dimmed = light.map((value, i) => value * Math.exp(-depth[i]))
+      const ratio = illuminance(picture, fov) / luminanceOf(parameters, dimmed)
+      const part = luminanceOf(parameters, dimmed) / luminanceOf(parameters, light)
+      t.note(
+        `${elevation}° high: ${(100 * part).toFixed(1)} % is left, ${ratio.toFixed(3)} of that`
+      )
+      expectTrue(Math.abs(ratio - 1) < 0.03, `${elevation}° high: ${ratio} of what it should be`)
+      atmosphere.dispose()
     }
-    const atmosphere = new Atmosphere().setSunAngles(-60, 270)
-    atmosphere.luminanceScale = 1
-    atmosphere.add(new Stars({ catalogue: [star] }))
-    const camera = new PerspectiveCamera(fov, width / height, 1, 1e6)
-    camera.position.y = 2
-    camera.lookAt(new Vector3(Math.cos(angle), Math.sin(angle), 0).add(camera.position))
-    camera.updateMatrixWorld()
-    const scene = new Scene()
-    scene.backgroundNode = skyBackground(atmosphere)
-    const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
-    const { parameters } = atmosphere
-    const radius = parameters.bottomRadius + 2
-    const length = distanceToTop(radius, Math.sin(angle), parameters.topRadius)
-    const depth = opticalDepth(parameters, radius, Math.sin(angle), length)
-    const light = starIrradiance(parameters, 0, VEGA * 10 ** -0.4)
-    const dimmed = light.map((value, i) => value * Math.exp(-depth[i]))
-    const ratio = illuminance(picture, fov) / luminanceOf(parameters, dimmed)
-    const part = luminanceOf(parameters, dimmed) / luminanceOf(parameters, light)
-    t.note(`${elevation}° high: ${(100 * part).toFixed(1)} % is left, ${ratio.toFixed(3)} of that`)
-    expectTrue(Math.abs(ratio - 1) < 0.03, `${elevation}° high: ${ratio} of what it should be`)
-    atmosphere.dispose()
-  }
-})
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest('lights a level plane at night as much as told', async t => {
   const renderer = await t.createRenderer({ width: 32, height: 32 })
@@ -347,42 +357,50 @@ gpuTest('lights a level plane at night as much as told', async t => {
   atmosphere.dispose()
 })
 
-gpuTest('dims what is beyond the air deep in the night as at dusk', async t => {
-  const renderer = await t.createRenderer({ width: 32, height: 32 })
-  const atmosphere = new Atmosphere()
-  atmosphere.add({ background: (_, farther) => farther.add(vec4(1)) })
-  const camera = new PerspectiveCamera(60, 1, 0.1, 100)
-  camera.position.y = 100
-  camera.rotation.x = 0.55
-  const scene = new Scene()
-  scene.backgroundNode = skyBackground(atmosphere)
-  const draw = (): Promise<Picture> => drawToFloat(renderer, () => renderer.render(scene, camera))
-  await atmosphere.bake(renderer)
-  // Night first: no hour before it has left anything behind.
-  atmosphere.setSunAngles(-60, 180)
-  const night = await draw()
-  atmosphere.setSunAngles(-20, 180)
-  const dusk = await draw()
-  const [zenith, horizon] = [night.at(16, 0), night.at(16, 31)].map(luminance)
-  t.note(`towards the horizon ${(horizon / zenith).toFixed(3)} of what comes from above`)
-  expectTrue(horizon < 0.7 * zenith, `${horizon} at the horizon, ${zenith} above`)
-  expectClose(Math.max(...relativeDifferences(night, dusk)), 0, { absolute: 1e-3 }, 'difference')
-  atmosphere.dispose()
-})
+gpuTest(
+  'dims what is beyond the air deep in the night as at dusk',
+  async t => {
+    const renderer = await t.createRenderer({ width: 32, height: 32 })
+    const atmosphere = new Atmosphere()
+    atmosphere.add({ background: (_, farther) => farther.add(vec4(1)) })
+    const camera = new PerspectiveCamera(60, 1, 0.1, 100)
+    camera.position.y = 100
+    camera.rotation.x = 0.55
+    const scene = new Scene()
+    scene.backgroundNode = skyBackground(atmosphere)
+    const draw = (): Promise<Picture> => drawToFloat(renderer, () => renderer.render(scene, camera))
+    await atmosphere.bake(renderer)
+    // Night first: no hour before it has left anything behind.
+    atmosphere.setSunAngles(-60, 180)
+    const night = await draw()
+    atmosphere.setSunAngles(-20, 180)
+    const dusk = await draw()
+    const [zenith, horizon] = [night.at(16, 0), night.at(16, 31)].map(luminance)
+    t.note(`towards the horizon ${(horizon / zenith).toFixed(3)} of what comes from above`)
+    expectTrue(horizon < 0.7 * zenith, `${horizon} at the horizon, ${zenith} above`)
+    expectClose(Math.max(...relativeDifferences(night, dusk)), 0, { absolute: 1e-3 }, 'difference')
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
-gpuTest('wants sensible airglow', () => {
-  const fails = (options: object, message: string): void => {
-    try {
-      const made = new Airglow(options)
-      expectTrue(false, `made ${made.luminance}`)
-    } catch (error) {
-      expectTrue(String(error).includes(message), `says ${String(error)}`)
+gpuTest(
+  'wants sensible airglow',
+  () => {
+    const fails = (options: object, message: string): void => {
+      try {
+        const made = new Airglow(options)
+        expectTrue(false, `made ${made.luminance}`)
+      } catch (error) {
+        expectTrue(String(error).includes(message), `says ${String(error)}`)
+      }
     }
-  }
-  fails({ luminance: -1 }, 'Airglow: luminance must be in [0, 1000000000], got -1')
-  fails({ altitude: NaN }, 'Airglow: altitude must be in')
-  fails({ spectrum: [1, 1, 1] }, 'Airglow: spectrum must be an array of 4 values, got [1, 1, 1]')
-})
+    fails({ luminance: -1 }, 'Airglow: luminance must be in [0, 1000000000], got -1')
+    fails({ altitude: NaN }, 'Airglow: altitude must be in')
+    fails({ spectrum: [1, 1, 1] }, 'Airglow: spectrum must be an array of 4 values, got [1, 1, 1]')
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest('folds the map of the Milky Way without a seam', async t => {
   const renderer = await t.createRenderer({ width: 4, height: 4 })

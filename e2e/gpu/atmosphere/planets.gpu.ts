@@ -52,54 +52,50 @@ gpuTest(
   async t => {
     const size = [4, 128]
     const renderer = await t.createRenderer({ width: size[0], height: size[1] })
-    for (const [name, parameters] of [
-      ['Earth', new AtmosphereParameters()],
-      ['Earth, turbidity 6', new AtmosphereParameters({ turbidity: 6 })]
+    const parameters = new AtmosphereParameters()
+    const radius = parameters.bottomRadius
+    const atmosphere = new Atmosphere({ parameters, ellipsoid: new Ellipsoid(radius, radius) })
+    await atmosphere.bake(renderer)
+    const scene = new Scene()
+    const camera = new PerspectiveCamera(1.8, size[0] / size[1], 1, 1e8)
+    camera.position.y = 4e5
+    const tangent = Math.acos((radius + 30_000) / (radius + 4e5))
+    camera.rotation.x = -tangent
+    camera.updateMatrixWorld()
+    for (const [elevation, azimuth] of [
+      [60, 90],
+      [20, 0],
+      [20, 180],
+      [5, 60]
     ] as const) {
-      const radius = parameters.bottomRadius
-      const atmosphere = new Atmosphere({ parameters, ellipsoid: new Ellipsoid(radius, radius) })
-      await atmosphere.bake(renderer)
-      const scene = new Scene()
-      const camera = new PerspectiveCamera(1.8, size[0] / size[1], 1, 1e8)
-      camera.position.y = 4e5
-      const tangent = Math.acos((radius + 30_000) / (radius + 4e5))
-      camera.rotation.x = -tangent
-      camera.updateMatrixWorld()
-      for (const [elevation, azimuth] of [
-        [60, 90],
-        [20, 0],
-        [20, 180],
-        [5, 60]
-      ] as const) {
-        atmosphere.setSunAngles(elevation, azimuth)
-        const picture = await drawForward(renderer, scene, camera, atmosphere)
-        const profile = Array.from({ length: size[1] }, (_, y) => {
-          const direction = pixelDirection(camera, 1, y, size)
-          const lowest = (radius + 4e5) * Math.sqrt(1 - direction.y ** 2) - radius
-          const expected = luminance(skyLuminanceAt(atmosphere, camera.position, direction))
-          const got = luminance(picture.at(1, y)) / atmosphere.luminanceScale
-          return { lowest, expected, got }
-        }).filter(({ lowest }) => lowest > 0 && lowest < 60_000)
-        expectTrue(profile.length > 80, `only ${profile.length} pixels see the limb`)
-        const brightest = Math.max(...profile.map(({ expected }) => expected))
-        const errors = profile.map(({ lowest, expected, got }) => ({
-          lowest,
-          relative: Math.abs(got / expected - 1),
-          ofBrightest: Math.abs(got - expected) / brightest
-        }))
-        // In the uppermost 2 km the air ends abruptly, and what light is left is 0.5 % of the brightest.
-        const limb = errors.filter(({ lowest }) => lowest < 58_000)
-        const mean = limb.reduce((sum, { relative }) => sum + relative, 0) / limb.length
-        const worst = Math.max(...limb.map(({ relative }) => relative))
-        const top = Math.max(...errors.map(({ ofBrightest }) => ofBrightest))
-        const label = `${name}, sun ${elevation}°, azimuth ${azimuth}°`
-        const percent = (value: number): string => `${(100 * value).toFixed(2)} %`
-        t.note(`${label}: mean ${percent(mean)}, worst ${percent(worst)}`)
-        expectTrue(worst < 0.05, `${label}: ${percent(worst)} off`)
-        expectTrue(top < 0.01, `${label}: ${percent(top)} of the brightest off`)
-      }
-      atmosphere.dispose()
+      atmosphere.setSunAngles(elevation, azimuth)
+      const picture = await drawForward(renderer, scene, camera, atmosphere)
+      const profile = Array.from({ length: size[1] }, (_, y) => {
+        const direction = pixelDirection(camera, 1, y, size)
+        const lowest = (radius + 4e5) * Math.sqrt(1 - direction.y ** 2) - radius
+        const expected = luminance(skyLuminanceAt(atmosphere, camera.position, direction))
+        const got = luminance(picture.at(1, y)) / atmosphere.luminanceScale
+        return { lowest, expected, got }
+      }).filter(({ lowest }) => lowest > 0 && lowest < 60_000)
+      expectTrue(profile.length > 80, `only ${profile.length} pixels see the limb`)
+      const brightest = Math.max(...profile.map(({ expected }) => expected))
+      const errors = profile.map(({ lowest, expected, got }) => ({
+        lowest,
+        relative: Math.abs(got / expected - 1),
+        ofBrightest: Math.abs(got - expected) / brightest
+      }))
+      // In the uppermost 2 km the air ends abruptly, and what light is left is 0.5 % of the brightest.
+      const limb = errors.filter(({ lowest }) => lowest < 58_000)
+      const mean = limb.reduce((sum, { relative }) => sum + relative, 0) / limb.length
+      const worst = Math.max(...limb.map(({ relative }) => relative))
+      const top = Math.max(...errors.map(({ ofBrightest }) => ofBrightest))
+      const label = `sun ${elevation}°, azimuth ${azimuth}°`
+      const percent = (value: number): string => `${(100 * value).toFixed(2)} %`
+      t.note(`${label}: mean ${percent(mean)}, worst ${percent(worst)}`)
+      expectTrue(worst < 0.05, `${label}: ${percent(worst)} off`)
+      expectTrue(top < 0.01, `${label}: ${percent(top)} of the brightest off`)
     }
+    atmosphere.dispose()
   },
   // `atmosphere/light` holds the same shader to float64 on both.
   { backends: ['webgpu'] }
@@ -137,6 +133,8 @@ gpuTest(
       camera.updateMatrixWorld()
       const picture = await drawForward(renderer, scene, camera, atmosphere)
       const origin = camera.position.clone().applyMatrix4(atmosphere.worldToECEF)
+      const light = new LightQuery('test', atmosphere, camera.position)
+      const white = luminance(light.linearSRGB([1, 1, 1, 1])) / Math.PI
       let worst = 0
       let seen = 0
       for (let y = 0; y < size[1]; y++) {
@@ -154,10 +152,6 @@ gpuTest(
           if (cosLight < 0.05) continue
           const isLight = Math.floor(column) % 2 === 1
           const value = luminance(picture.at(x, y)) / cosLight
-          const white =
-            luminance(
-              new LightQuery('test', atmosphere, camera.position).linearSRGB([1, 1, 1, 1])
-            ) / Math.PI
           const looksLight = value > 0.5 * white * atmosphere.luminanceScale
           if (looksLight === isLight) continue
           // How far from the edge between two texels, on the ground.
@@ -246,50 +240,60 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
-gpuTest('feeds the mean albedo of its ground to the air', async t => {
-  const renderer = await t.createRenderer({ width: 32, height: 32 })
-  const atmosphere = new Atmosphere()
-  const half = new Float32Array(4 * 2 * 4).map((_, i) => (Math.floor(i / 4) % 2 === 0 ? 0.2 : 0.6))
-  const map = new DataTexture(half, 2, 4, RGBAFormat, FloatType)
-  map.minFilter = map.magFilter = NearestFilter
-  map.needsUpdate = true
-  const albedo = await planetGround({ surface: map }).meanAlbedo(renderer, atmosphere.parameters)
-  expectClose(albedo, [0.4, 0.4, 0.4, 0.4], { relative: 5e-3 }, 'albedo')
-  const made = await planetGround().meanAlbedo(renderer, atmosphere.parameters)
-  t.note(`made up: ${made.map(value => value.toFixed(3)).join(', ')}`)
-  made.forEach(value => expectTrue(value > 0.08 && value < 0.3, `made-up albedo is ${value}`))
-  map.dispose()
-  atmosphere.dispose()
-})
+gpuTest(
+  'feeds the mean albedo of its ground to the air',
+  async t => {
+    const renderer = await t.createRenderer({ width: 32, height: 32 })
+    const atmosphere = new Atmosphere()
+    const half = new Float32Array(4 * 2 * 4).map((_, i) =>
+      Math.floor(i / 4) % 2 === 0 ? 0.2 : 0.6
+    )
+    const map = new DataTexture(half, 2, 4, RGBAFormat, FloatType)
+    map.minFilter = map.magFilter = NearestFilter
+    map.needsUpdate = true
+    const albedo = await planetGround({ surface: map }).meanAlbedo(renderer, atmosphere.parameters)
+    expectClose(albedo, [0.4, 0.4, 0.4, 0.4], { relative: 5e-3 }, 'albedo')
+    const made = await planetGround().meanAlbedo(renderer, atmosphere.parameters)
+    t.note(`made up: ${made.map(value => value.toFixed(3)).join(', ')}`)
+    made.forEach(value => expectTrue(value > 0.08 && value < 0.3, `made-up albedo is ${value}`))
+    map.dispose()
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
-gpuTest('shows a body without air: black sky, sun, sunlit ground', async t => {
-  const renderer = await t.createRenderer({ width: 64, height: 36 })
-  const parameters = airlessParameters()
-  const { bottomRadius } = parameters
-  const ellipsoid = new Ellipsoid(bottomRadius, bottomRadius)
-  const atmosphere = new Atmosphere({ parameters, ellipsoid }).setSunAngles(10, 0)
-  const scene = new Scene()
-  const ball = new Mesh(new SphereGeometry(1, 32, 16), new MeshLambertMaterial())
-  ball.position.set(6, 0, -20)
-  scene.add(ball, new SunDirectionalLight(atmosphere))
-  const camera = new PerspectiveCamera(50, 64 / 36, 0.1, 1e6)
-  camera.position.y = 2
-  camera.rotation.x = 0.1
-  camera.updateMatrixWorld()
-  const picture = await drawForward(renderer, scene, camera, atmosphere)
-  expectLight(picture, 'airless')
-  expectTrue(luminance(picture.at(8, 4)) === 0, `the sky is ${picture.at(8, 4)}`)
-  const brightest = Math.max(...picture.data)
-  expectTrue(brightest > 1000, `the sun's disc is ${brightest}`)
-  const reflected = parameters.groundAlbedo.map(
-    albedo => (albedo * Math.sin(Math.PI / 18) * atmosphere.luminanceScale) / Math.PI
-  )
-  const expected = luminance(
-    new LightQuery('test', atmosphere, camera.position).linearSRGB(reflected)
-  )
-  expectClose(luminance(picture.at(2, 34)), expected, { relative: 0.01 }, 'ground')
-  atmosphere.dispose()
-})
+gpuTest(
+  'shows a body without air: black sky, sun, sunlit ground',
+  async t => {
+    const renderer = await t.createRenderer({ width: 64, height: 36 })
+    const parameters = airlessParameters()
+    const { bottomRadius } = parameters
+    const ellipsoid = new Ellipsoid(bottomRadius, bottomRadius)
+    const atmosphere = new Atmosphere({ parameters, ellipsoid }).setSunAngles(10, 0)
+    const scene = new Scene()
+    const ball = new Mesh(new SphereGeometry(1, 32, 16), new MeshLambertMaterial())
+    ball.position.set(6, 0, -20)
+    scene.add(ball, new SunDirectionalLight(atmosphere))
+    const camera = new PerspectiveCamera(50, 64 / 36, 0.1, 1e6)
+    camera.position.y = 2
+    camera.rotation.x = 0.1
+    camera.updateMatrixWorld()
+    const picture = await drawForward(renderer, scene, camera, atmosphere)
+    expectLight(picture, 'airless')
+    expectTrue(luminance(picture.at(8, 4)) === 0, `the sky is ${picture.at(8, 4)}`)
+    const brightest = Math.max(...picture.data)
+    expectTrue(brightest > 1000, `the sun's disc is ${brightest}`)
+    const reflected = parameters.groundAlbedo.map(
+      albedo => (albedo * Math.sin(Math.PI / 18) * atmosphere.luminanceScale) / Math.PI
+    )
+    const expected = luminance(
+      new LightQuery('test', atmosphere, camera.position).linearSRGB(reflected)
+    )
+    expectClose(luminance(picture.at(2, 34)), expected, { relative: 0.01 }, 'ground')
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest(
   'keeps two atmospheres in one scene apart',
@@ -337,23 +341,27 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
-gpuTest('keeps up and the sky of a flat world wherever the camera goes', async t => {
-  const renderer = await t.createRenderer({ width: 32, height: 18 })
-  const atmosphere = new Atmosphere({ flat: true }).setSunAngles(5, 60)
-  const scene = new Scene()
-  const camera = new PerspectiveCamera(60, 32 / 18, 1, 1e7)
-  const pictures = []
-  for (const [x, z] of [
-    [0, 0],
-    [2e6, -5e6]
-  ]) {
-    camera.position.set(x, 50, z)
-    camera.updateMatrixWorld()
-    pictures.push(await drawForward(renderer, scene, camera, atmosphere))
-  }
-  expectTrue(relativeDifferences(pictures[0], pictures[1]).at(-1)! < 1e-4, 'the sky has changed')
-  atmosphere.dispose()
-})
+gpuTest(
+  'keeps up and the sky of a flat world wherever the camera goes',
+  async t => {
+    const renderer = await t.createRenderer({ width: 32, height: 18 })
+    const atmosphere = new Atmosphere({ flat: true }).setSunAngles(5, 60)
+    const scene = new Scene()
+    const camera = new PerspectiveCamera(60, 32 / 18, 1, 1e7)
+    const pictures = []
+    for (const [x, z] of [
+      [0, 0],
+      [2e6, -5e6]
+    ]) {
+      camera.position.set(x, 50, z)
+      camera.updateMatrixWorld()
+      pictures.push(await drawForward(renderer, scene, camera, atmosphere))
+    }
+    expectTrue(relativeDifferences(pictures[0], pictures[1]).at(-1)! < 1e-4, 'the sky has changed')
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest(
   'draws only light on Venus, from the clouds to space',
@@ -365,7 +373,7 @@ gpuTest(
     const atmosphere = new Atmosphere({ parameters, ellipsoid })
     const camera = new PerspectiveCamera(60, 32 / 18, 1, 1e8)
     for (const height of [0, 2, 1e4, 1e5, 1e7]) {
-      for (const sun of [90, 10, -3, -60]) {
+      for (const sun of [90, -3]) {
         atmosphere.setSunAngles(sun, 30)
         camera.position.y = height
         camera.rotation.x = height > 1e6 ? -1.5 : -0.1

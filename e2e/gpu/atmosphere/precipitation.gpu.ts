@@ -194,7 +194,11 @@ gpuTest(
     const renderer = await t.createRenderer(size)
     const { scene, camera, atmosphere } = view()
     atmosphere.setSunAngles(-30, 0)
-    const luna = moon({ phase: 0.5, direction: new Vector3(0.5, 0.6, 0.7).normalize() })
+    const luna = moon({
+      mapSize: 64,
+      phase: 0.5,
+      direction: new Vector3(0.5, 0.6, 0.7).normalize()
+    })
     const moonlight = new MoonDirectionalLight(atmosphere, luna)
     const lamp = new DirectionalLight('#ffffff', 2)
     lamp.position.copy(luna.direction!)

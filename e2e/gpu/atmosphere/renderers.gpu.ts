@@ -153,11 +153,15 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
-gpuTest('refuses a layer that another renderer draws', async t => {
-  const camera = makeCamera()
-  const layer = milkyWay()
-  const [first, second] = [await t.createRenderer(size), await t.createRenderer(size)]
-  const scenes = [0, 1].map(() => everything(new Atmosphere().add(layer)))
-  first.render(scenes[0], camera)
-  expectError(() => second.render(scenes[1], camera), /MilkyWay: renderer must be the first/)
-})
+gpuTest(
+  'refuses a layer that another renderer draws',
+  async t => {
+    const camera = makeCamera()
+    const layer = milkyWay()
+    const [first, second] = [await t.createRenderer(size), await t.createRenderer(size)]
+    const scenes = [0, 1].map(() => everything(new Atmosphere().add(layer)))
+    first.render(scenes[0], camera)
+    expectError(() => second.render(scenes[1], camera), /MilkyWay: renderer must be the first/)
+  },
+  { backends: ['webgpu'] }
+)

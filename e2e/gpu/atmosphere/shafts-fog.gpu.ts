@@ -10,57 +10,65 @@ import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
 import { addBox, expectSame, parameters, stage, stageSize as size } from '../harness/shaft-stage'
 
-gpuTest('leaves fog without casters the same to the last bit', async t => {
-  const renderer = await t.createRenderer(size)
-  const [plain, shafted] = [null, {}].map(options => stage(renderer, 20, options))
-  for (const { atmosphere } of [plain, shafted])
-    atmosphere.add(distanceFog({ density: 1 / 4000 }), heightFog({ density: 0.002 }))
-  expectSame(await shafted.draw(), await plain.draw(), 'no casters')
-  plain.dispose()
-  shafted.dispose()
-})
+gpuTest(
+  'leaves fog without casters the same to the last bit',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const [plain, shafted] = [null, {}].map(options => stage(renderer, 20, options))
+    for (const { atmosphere } of [plain, shafted])
+      atmosphere.add(distanceFog({ density: 1 / 4000 }), heightFog({ density: 0.002 }))
+    expectSame(await shafted.draw(), await plain.draw(), 'no casters')
+    plain.dispose()
+    shafted.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
-gpuTest('takes as much more from the air as an artistic factor gives it', async t => {
-  const renderer = await t.createRenderer(size)
-  const set = stage(renderer, 12, { quality: 'medium' })
-  const { scene, camera, shafts, atmosphere } = set
-  const style = airStyle()
-  atmosphere.add(style)
-  shafts.add({ castInto: () => ({ transmittance: () => () => float(0) }) })
-  const distance = 20_000
-  addBox(scene, [0, 0, -distance - 50], [9000, 9000, 100]).material.color.set(0)
-  camera.position.y = 500
-  camera.fov = 1
-  camera.updateProjectionMatrix()
-  const forward = async (): Promise<Picture> => {
-    await nextFrame()
-    return drawForward(renderer, scene, camera, atmosphere)
-  }
-  const air = parameters()
-  const clear = extinction(air, densities(air, 500))
-  for (const draw of [set.draw, forward]) {
-    if (draw === forward) atmosphere.add(shafts)
-    const lost: number[][] = []
-    for (const haze of [0, 1, 2]) {
-      style.set({ haze })
-      shafts.enabled = false
-      const lit = await draw()
-      shafts.enabled = true
-      const dark = await draw()
-      const [x, y] = [size.width / 2, size.height / 2]
-      lost.push(dark.at(x, y).map((light, k) => lit.at(x, y)[k] - light))
+gpuTest(
+  'takes as much more from the air as an artistic factor gives it',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const set = stage(renderer, 12, { quality: 'medium' })
+    const { scene, camera, shafts, atmosphere } = set
+    const style = airStyle()
+    atmosphere.add(style)
+    shafts.add({ castInto: () => ({ transmittance: () => () => float(0) }) })
+    const distance = 20_000
+    addBox(scene, [0, 0, -distance - 50], [9000, 9000, 100]).material.color.set(0)
+    camera.position.y = 500
+    camera.fov = 1
+    camera.updateProjectionMatrix()
+    const forward = async (): Promise<Picture> => {
+      await nextFrame()
+      return drawForward(renderer, scene, camera, atmosphere)
     }
-    for (let k = 0; k < 3; k++) {
-      const label = `${draw === forward ? 'materials' : 'post effect'}, channel ${k}`
-      expectTrue(lost[0][k] === 0, `${label}: nothing to take`)
-      // Where light is the same all along the ray.
-      const ratio = 1 + Math.exp(-clear[k] * distance)
-      t.note(`${(100 * (lost[2][k] / lost[1][k] / ratio - 1)).toFixed(2)} %`)
-      expectClose(lost[2][k], ratio * lost[1][k], { relative: 0.01 }, label)
+    const air = parameters()
+    const clear = extinction(air, densities(air, 500))
+    for (const draw of [set.draw, forward]) {
+      if (draw === forward) atmosphere.add(shafts)
+      const lost: number[][] = []
+      for (const haze of [0, 1, 2]) {
+        style.set({ haze })
+        shafts.enabled = false
+        const lit = await draw()
+        shafts.enabled = true
+        const dark = await draw()
+        const [x, y] = [size.width / 2, size.height / 2]
+        lost.push(dark.at(x, y).map((light, k) => lit.at(x, y)[k] - light))
+      }
+      for (let k = 0; k < 3; k++) {
+        const label = `${draw === forward ? 'materials' : 'post effect'}, channel ${k}`
+        expectTrue(lost[0][k] === 0, `${label}: nothing to take`)
+        // Where light is the same all along the ray.
+        const ratio = 1 + Math.exp(-clear[k] * distance)
+        t.note(`${(100 * (lost[2][k] / lost[1][k] / ratio - 1)).toFixed(2)} %`)
+        expectClose(lost[2][k], ratio * lost[1][k], { relative: 0.01 }, label)
+      }
     }
-  }
-  set.dispose()
-})
+    set.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest('takes what height fog scatters once from its light where all is dark', async t => {
   const renderer = await t.createRenderer(size)

@@ -155,7 +155,8 @@ gpuTest(
         expectTrue(most <= MOST_OVER, `${name}, ${fast[i]}: ${most} more is lost at a pixel`)
       })
     }
-  }
+  },
+  { backends: ['webgpu'] }
 )
 
 /** Grain of the light that is lost before thin clouds: difference of neighbouring pixels' shares, at most [–]. */
@@ -181,5 +182,6 @@ gpuTest(
       t.note(`${fast[i]}: ${(100 * grain).toFixed(1)} % of grain`)
       expectTrue(grain <= MOST_GRAIN, `${fast[i]}: grain of ${grain} before thin clouds`)
     })
-  }
+  },
+  { backends: ['webgpu'] }
 )

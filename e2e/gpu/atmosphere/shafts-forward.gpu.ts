@@ -49,57 +49,65 @@ gpuTest(
   }
 )
 
-gpuTest('draws cascades before the sky, in the frame in which casters move', async t => {
-  const renderer = await t.createRenderer(size)
-  const { scene, camera, light, shafts, atmosphere, dispose } = stage(renderer, 15)
-  const tower = addBox(scene, [-300, 200, -600], [500, 500, 60])
-  const shadowNode = new CSMShadowNode(light, { cascades: 3, maxFar: 3000, lightMargin: 2000 })
-  Object.assign(light.shadow, { shadowNode })
-  atmosphere.add(shafts)
-  scene.backgroundNode = skyBackground(atmosphere)
-  scene.fogNode = aerialPerspectiveFog(atmosphere)
-  camera.updateMatrixWorld()
-  const draw = async (x: number): Promise<Picture> => {
-    tower.position.x = x
-    await nextFrame()
-    return drawToFloat(renderer, () => renderer.render(scene, camera))
-  }
-  for (let i = 0; i < 3; i++) await draw(-300)
-  const before = await draw(-300)
-  const moved = await draw(100)
-  const differs = moved.data.filter((value, i) => value !== before.data[i]).length
-  expectTrue(differs > 0.1 * moved.data.length, 'the tower has moved')
-  expectSame(await draw(100), moved, 'a frame later')
-  dispose()
-})
+gpuTest(
+  'draws cascades before the sky, in the frame in which casters move',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const { scene, camera, light, shafts, atmosphere, dispose } = stage(renderer, 15)
+    const tower = addBox(scene, [-300, 200, -600], [500, 500, 60])
+    const shadowNode = new CSMShadowNode(light, { cascades: 3, maxFar: 3000, lightMargin: 2000 })
+    Object.assign(light.shadow, { shadowNode })
+    atmosphere.add(shafts)
+    scene.backgroundNode = skyBackground(atmosphere)
+    scene.fogNode = aerialPerspectiveFog(atmosphere)
+    camera.updateMatrixWorld()
+    const draw = async (x: number): Promise<Picture> => {
+      tower.position.x = x
+      await nextFrame()
+      return drawToFloat(renderer, () => renderer.render(scene, camera))
+    }
+    for (let i = 0; i < 3; i++) await draw(-300)
+    const before = await draw(-300)
+    const moved = await draw(100)
+    const differs = moved.data.filter((value, i) => value !== before.data[i]).length
+    expectTrue(differs > 0.1 * moved.data.length, 'the tower has moved')
+    expectSame(await draw(100), moved, 'a frame later')
+    dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
-gpuTest('is turned on and off in materials that stand still, and changes quality', async t => {
-  const renderer = await t.createRenderer(size)
-  const { scene, camera, atmosphere, shafts, dispose } = stage(renderer, 15)
-  addBox(scene, [0, 200, -600], [200, 500, 40])
-  atmosphere.add(shafts)
-  scene.backgroundNode = skyBackground(atmosphere)
-  scene.fogNode = aerialPerspectiveFog(atmosphere)
-  camera.updateMatrixWorld()
-  // Compiled, the first frame has them too.
-  await renderer.compileAsync(scene, camera)
-  const draw = async (options: LightShaftsOptions): Promise<Picture> => {
-    shafts.set(options)
-    await nextFrame()
-    return drawToFloat(renderer, () => renderer.render(scene, camera))
-  }
-  const first = await draw({ quality: 'medium' })
-  expectSame(await draw({}), first, 'a frame later')
-  const lit = await draw({ enabled: false })
-  const differs = first.data.filter((value, i) => value !== lit.data[i]).length
-  expectTrue(differs > 0.1 * lit.data.length, 'the box casts a shadow')
-  expectSame(await draw({ enabled: true }), first, 'on again')
-  const qualities = ['low', 'high', 'reference', 'medium'] as const
-  for (const quality of qualities) {
-    await draw({ quality })
-    expectSame(await draw({ enabled: false }), lit, `${quality} quality, off`)
-    shafts.enabled = true
-  }
-  expectSame(await draw({}), first, 'medium again')
-  dispose()
-})
+gpuTest(
+  'is turned on and off in materials that stand still, and changes quality',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const { scene, camera, atmosphere, shafts, dispose } = stage(renderer, 15)
+    addBox(scene, [0, 200, -600], [200, 500, 40])
+    atmosphere.add(shafts)
+    scene.backgroundNode = skyBackground(atmosphere)
+    scene.fogNode = aerialPerspectiveFog(atmosphere)
+    camera.updateMatrixWorld()
+    // Compiled, the first frame has them too.
+    await renderer.compileAsync(scene, camera)
+    const draw = async (options: LightShaftsOptions): Promise<Picture> => {
+      shafts.set(options)
+      await nextFrame()
+      return drawToFloat(renderer, () => renderer.render(scene, camera))
+    }
+    const first = await draw({ quality: 'medium' })
+    expectSame(await draw({}), first, 'a frame later')
+    const lit = await draw({ enabled: false })
+    const differs = first.data.filter((value, i) => value !== lit.data[i]).length
+    expectTrue(differs > 0.1 * lit.data.length, 'the box casts a shadow')
+    expectSame(await draw({ enabled: true }), first, 'on again')
+    const qualities = ['low', 'high', 'reference', 'medium'] as const
+    for (const quality of qualities) {
+      await draw({ quality })
+      expectSame(await draw({ enabled: false }), lit, `${quality} quality, off`)
+      shafts.enabled = true
+    }
+    expectSame(await draw({}), first, 'medium again')
+    dispose()
+  },
+  { backends: ['webgpu'] }
+)

@@ -32,78 +32,87 @@ import {
 const apart = (a: Picture, b: Picture): number =>
   a.data.reduce((sum, value, i) => sum + Math.abs(value - b.data[i]), 0)
 
-gpuTest('has the same shafts in world units of a kilometre and in ECEF axes', async t => {
-  // Vertices of the planet's size are none of three's, but by this.
-  const renderer = await t.createRenderer(size)
-  renderer.highPrecision = true
-  const drawIn = async (frame: 'metres' | 'kilometres' | 'ECEF'): Promise<Picture[]> => {
-    const set = stage(renderer, 15)
-    const { atmosphere, camera, light, shafts } = set
-    const before = atmosphere.worldToECEF.clone()
-    if (frame === 'kilometres') atmosphere.metersPerUnit = 1000
-    if (frame === 'ECEF') {
-      atmosphere.worldToECEF.identity()
-      atmosphere.sunDirection = atmosphere.sunDirection.clone().transformDirection(before)
+gpuTest(
+  'has the same shafts in world units of a kilometre and in ECEF axes',
+  async t => {
+    // Vertices of the planet's size are none of three's, but by this.
+    const renderer = await t.createRenderer(size)
+    renderer.highPrecision = true
+    const drawIn = async (frame: 'metres' | 'kilometres' | 'ECEF'): Promise<Picture[]> => {
+      const set = stage(renderer, 15)
+      const { atmosphere, camera, light, shafts } = set
+      const before = atmosphere.worldToECEF.clone()
+      if (frame === 'kilometres') atmosphere.metersPerUnit = 1000
+      if (frame === 'ECEF') {
+        atmosphere.worldToECEF.identity()
+        atmosphere.sunDirection = atmosphere.sunDirection.clone().transformDirection(before)
+      }
+      const matrix = atmosphere.worldToECEF.clone().invert().multiply(before)
+      const units = matrix.getMaxScaleOnAxis()
+      addTowers(set, matrix)
+      const [position, turn] = [camera.position.clone().applyMatrix4(matrix), new Quaternion()]
+      matrix.decompose(light.target.position, turn, new Vector3())
+      camera.position.copy(position)
+      camera.quaternion.premultiply(turn)
+      camera.near *= units
+      camera.far *= units
+      camera.updateProjectionMatrix()
+      light.distance = 6000 * units
+      const { camera: lens } = light.shadow
+      for (const side of ['left', 'right', 'bottom', 'top', 'near', 'far'] as const)
+        lens[side] *= units
+      lens.updateProjectionMatrix()
+      await set.draw()
+      const shadowed = await set.draw()
+      shafts.enabled = false
+      const lit = await set.draw()
+      set.dispose()
+      return [shadowed, lit]
     }
-    const matrix = atmosphere.worldToECEF.clone().invert().multiply(before)
-    const units = matrix.getMaxScaleOnAxis()
-    addTowers(set, matrix)
-    const [position, turn] = [camera.position.clone().applyMatrix4(matrix), new Quaternion()]
-    matrix.decompose(light.target.position, turn, new Vector3())
-    camera.position.copy(position)
-    camera.quaternion.premultiply(turn)
-    camera.near *= units
-    camera.far *= units
-    camera.updateProjectionMatrix()
-    light.distance = 6000 * units
-    const { camera: lens } = light.shadow
-    for (const side of ['left', 'right', 'bottom', 'top', 'near', 'far'] as const)
-      lens[side] *= units
-    lens.updateProjectionMatrix()
-    await set.draw()
-    const shadowed = await set.draw()
-    shafts.enabled = false
-    const lit = await set.draw()
-    set.dispose()
-    return [shadowed, lit]
-  }
-  const [expected, lit] = await drawIn('metres')
-  const shadows = apart(lit, expected)
-  expectTrue(
-    shadows > 2e-4 * lit.data.reduce((sum, value) => sum + value, 0),
-    'towers cast shadows'
-  )
-  for (const frame of ['kilometres', 'ECEF'] as const) {
-    const [picture, litThere] = await drawIn(frame)
-    const error = Math.abs(apart(litThere, picture) / shadows - 1)
-    const difference = Math.abs(apart(picture, expected) - apart(litThere, lit)) / shadows
-    t.note(
-      `${frame}: shafts ${(100 * error).toFixed(2)} % and ${(100 * difference).toFixed(2)} % apart`
+    const [expected, lit] = await drawIn('metres')
+    const shadows = apart(lit, expected)
+    expectTrue(
+      shadows > 2e-4 * lit.data.reduce((sum, value) => sum + value, 0),
+      'towers cast shadows'
     )
-    expectTrue(error < 0.02, `${frame}: as much light is lost`)
-    expectTrue(difference < 0.05, `${frame}: where it is lost`)
-  }
-})
+    for (const frame of ['kilometres', 'ECEF'] as const) {
+      const [picture, litThere] = await drawIn(frame)
+      const error = Math.abs(apart(litThere, picture) / shadows - 1)
+      const difference = Math.abs(apart(picture, expected) - apart(litThere, lit)) / shadows
+      t.note(
+        `${frame}: shafts ${(100 * error).toFixed(2)} % and ${(100 * difference).toFixed(2)} % apart`
+      )
+      expectTrue(error < 0.02, `${frame}: as much light is lost`)
+      expectTrue(difference < 0.05, `${frame}: where it is lost`)
+    }
+  },
+  { backends: ['webgpu'] }
+)
 
-gpuTest('has the same shafts when the origin of the world moves', async t => {
-  const renderer = await t.createRenderer(size)
-  const set = stage(renderer, 15)
-  const { atmosphere, camera, light } = set
-  addTowers(set, new Matrix4())
-  await set.draw()
-  const before = await set.draw()
-  set.shafts.enabled = false
-  const lit = await set.draw()
-  set.shafts.enabled = true
-  const step = new Vector3(3000, -20, 1500)
-  atmosphere.worldToECEF.multiply(new Matrix4().makeTranslation(step))
-  for (const { position } of [camera, light.target, set.scene.children.at(-1)!]) position.sub(step)
-  const after = await set.draw()
-  const error = apart(before, after) / apart(before, lit)
-  t.note(`${(100 * error).toFixed(2)} % of the shafts apart`)
-  expectTrue(error < 0.02, `${error} of the shafts apart`)
-  set.dispose()
-})
+gpuTest(
+  'has the same shafts when the origin of the world moves',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const set = stage(renderer, 15)
+    const { atmosphere, camera, light } = set
+    addTowers(set, new Matrix4())
+    await set.draw()
+    const before = await set.draw()
+    set.shafts.enabled = false
+    const lit = await set.draw()
+    set.shafts.enabled = true
+    const step = new Vector3(3000, -20, 1500)
+    atmosphere.worldToECEF.multiply(new Matrix4().makeTranslation(step))
+    for (const { position } of [camera, light.target, set.scene.children.at(-1)!])
+      position.sub(step)
+    const after = await set.draw()
+    const error = apart(before, after) / apart(before, lit)
+    t.note(`${(100 * error).toFixed(2)} % of the shafts apart`)
+    expectTrue(error < 0.02, `${error} of the shafts apart`)
+    set.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest("reads the cascades of three's SunLight as it reads one map", async t => {
   const renderer = await t.createRenderer(size)
@@ -150,34 +159,38 @@ gpuTest("reads the cascades of three's SunLight as it reads one map", async t =>
   set.dispose()
 })
 
-gpuTest('draws two cameras in a frame as it draws each alone', async t => {
-  const renderer = await t.createRenderer(size)
-  const set = stage(renderer, 15)
-  addTowers(set, new Matrix4())
-  const camera = set.camera.clone()
-  camera.position.set(-200, 60, 100)
-  camera.lookAt(0, 300, -600)
-  camera.updateMatrixWorld()
-  set.camera.updateMatrixWorld()
-  const other = secondCamera(set, renderer, camera)
-  const pipelines = [set.pipeline, other.pipeline]
-  const alone: Picture[] = []
-  for (const pipeline of pipelines) {
+gpuTest(
+  'draws two cameras in a frame as it draws each alone',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const set = stage(renderer, 15)
+    addTowers(set, new Matrix4())
+    const camera = set.camera.clone()
+    camera.position.set(-200, 60, 100)
+    camera.lookAt(0, 300, -600)
+    camera.updateMatrixWorld()
+    set.camera.updateMatrixWorld()
+    const other = secondCamera(set, renderer, camera)
+    const pipelines = [set.pipeline, other.pipeline]
+    const alone: Picture[] = []
+    for (const pipeline of pipelines) {
+      for (let i = 0; i < 2; i++) {
+        await nextFrame()
+        alone[pipelines.indexOf(pipeline)] = await drawToFloat(renderer, () => pipeline.render())
+      }
+    }
+    expectTrue(apart(alone[0], alone[1]) > 0, 'the cameras see something else')
     for (let i = 0; i < 2; i++) {
       await nextFrame()
-      alone[pipelines.indexOf(pipeline)] = await drawToFloat(renderer, () => pipeline.render())
+      for (const [k, pipeline] of pipelines.entries()) {
+        expectSame(await drawToFloat(renderer, () => pipeline.render()), alone[k], `camera ${k}`)
+      }
     }
-  }
-  expectTrue(apart(alone[0], alone[1]) > 0, 'the cameras see something else')
-  for (let i = 0; i < 2; i++) {
-    await nextFrame()
-    for (const [k, pipeline] of pipelines.entries()) {
-      expectSame(await drawToFloat(renderer, () => pipeline.render()), alone[k], `camera ${k}`)
-    }
-  }
-  other.dispose()
-  set.dispose()
-})
+    other.dispose()
+    set.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest(
   'takes from the air of a shell what it takes from the sky',

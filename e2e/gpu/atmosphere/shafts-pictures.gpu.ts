@@ -164,7 +164,8 @@ gpuTest(
       const lit = await set.draw()
       shafts.enabled = true
       t.note(`without shafts ${likeness(expected, lit).toFixed(1)} dB`)
-      for (const [quality, goal] of goals) {
+      // Away from the sun by the quality that is the default.
+      for (const [quality, goal] of angle > 0 ? goals : [goals[1]]) {
         shafts.set({ quality })
         turnTo(set, angle)
         await set.draw()
@@ -194,35 +195,27 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
-gpuTest(
-  'draws what 512 steps a pixel do while the camera turns by 60 and 90° a second',
-  async t => {
-    const renderer = await t.createRenderer({ width: size.width / 2, height: size.height / 2 })
-    const set = stage(renderer, 15)
-    const { shafts, camera } = set
-    city(set)
-    camera.fov /= 2
-    camera.updateProjectionMatrix()
-    const angle = 0.3
-    turnTo(set, angle)
-    const expected = await byMaterials(renderer, set)
-    shafts.set({ quality: 'medium' })
-    for (const [speed, step] of [
-      [60, TURN],
-      [90, 1.5 * TURN]
-    ]) {
-      for (const before of [3, 2, 1]) {
-        turnTo(set, angle - before * step)
-        await set.draw()
-      }
-      turnTo(set, angle)
-      const turning = likeness(expected, await set.draw())
-      t.note(`${speed}°/s: ${turning.toFixed(1)} dB`)
-      expectTrue(turning >= 40, `turning by ${speed}°/s`)
-    }
-    set.dispose()
+gpuTest('draws what 512 steps a pixel do while the camera turns by 90° a second', async t => {
+  const renderer = await t.createRenderer({ width: size.width / 2, height: size.height / 2 })
+  const set = stage(renderer, 15)
+  const { shafts, camera } = set
+  city(set)
+  camera.fov /= 2
+  camera.updateProjectionMatrix()
+  const angle = 0.3
+  turnTo(set, angle)
+  const expected = await byMaterials(renderer, set)
+  shafts.set({ quality: 'medium' })
+  for (const before of [3, 2, 1]) {
+    turnTo(set, angle - before * 1.5 * TURN)
+    await set.draw()
   }
-)
+  turnTo(set, angle)
+  const turning = likeness(expected, await set.draw())
+  t.note(`${turning.toFixed(1)} dB`)
+  expectTrue(turning >= 40, 'turning')
+  set.dispose()
+})
 
 /** Fog has more light than clear air to lose. */
 const fogGoals: [LightShaftsQuality, number][] = [

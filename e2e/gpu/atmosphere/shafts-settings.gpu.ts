@@ -30,7 +30,8 @@ gpuTest(
       'nothing is compiled'
     )
     dispose()
-  }
+  },
+  { backends: ['webgpu'] }
 )
 
 gpuTest('frees its textures', async t => {

@@ -115,91 +115,100 @@ for (const isMoonlit of [false, true]) {
         }
       }
       dispose()
-    }
+    },
+    { backends: isMoonlit ? ['webgpu'] : ['webgpu', 'webgl'] }
   )
 }
 
-gpuTest("has an occluder of one's own beyond all shadow maps", async t => {
-  const renderer = await t.createRenderer(size)
-  const { camera, draw, shafts, atmosphere, dispose } = stage(renderer, 25)
-  const before = await draw()
-  // All is dark east of the camera, of which the scene is ten times as large in these units.
-  atmosphere.metersPerUnit = 0.1
-  camera.position.set(5000, 20, 300)
-  const lit = await draw()
-  const occluder: AirOccluder = {
-    castInto: () => ({
-      transmittance:
-        () =>
-        ({ positionWorld }) =>
-          positionWorld().x.greaterThan(5000).select(0, 1)
-    })
-  }
-  shafts.add(occluder)
-  const dark = await draw()
-  for (const y of [4, 12]) {
-    const row = Array.from({ length: size.width }, (_, x) => dark.at(x, y)[1] / lit.at(x, y)[1])
-    const [west, east] = [row.slice(0, size.width / 2 - 4), row.slice(size.width / 2 + 4)]
-    expectTrue(
-      west.every(part => part === 1),
-      `the west is lit: ${Math.min(...west)}`
-    )
-    expectTrue(
-      east.every(part => part < 0.8),
-      `the east is dark: ${Math.max(...east)}`
-    )
-  }
-  shafts.remove(occluder)
-  atmosphere.metersPerUnit = 1
-  camera.position.set(0, 2, 0)
-  expectSame(await draw(), before, 'taken out')
-  dispose()
-})
+gpuTest(
+  "has an occluder of one's own beyond all shadow maps",
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const { camera, draw, shafts, atmosphere, dispose } = stage(renderer, 25)
+    const before = await draw()
+    // All is dark east of the camera, of which the scene is ten times as large in these units.
+    atmosphere.metersPerUnit = 0.1
+    camera.position.set(5000, 20, 300)
+    const lit = await draw()
+    const occluder: AirOccluder = {
+      castInto: () => ({
+        transmittance:
+          () =>
+          ({ positionWorld }) =>
+            positionWorld().x.greaterThan(5000).select(0, 1)
+      })
+    }
+    shafts.add(occluder)
+    const dark = await draw()
+    for (const y of [4, 12]) {
+      const row = Array.from({ length: size.width }, (_, x) => dark.at(x, y)[1] / lit.at(x, y)[1])
+      const [west, east] = [row.slice(0, size.width / 2 - 4), row.slice(size.width / 2 + 4)]
+      expectTrue(
+        west.every(part => part === 1),
+        `the west is lit: ${Math.min(...west)}`
+      )
+      expectTrue(
+        east.every(part => part < 0.8),
+        `the east is dark: ${Math.max(...east)}`
+      )
+    }
+    shafts.remove(occluder)
+    atmosphere.metersPerUnit = 1
+    camera.position.set(0, 2, 0)
+    expectSame(await draw(), before, 'taken out')
+    dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
-gpuTest('takes light scattered more than once where an occluder dims it', async t => {
-  const renderer = await t.createRenderer(size)
-  const { camera, draw, shafts, dispose } = stage(renderer, 25, { quality: 'reference' })
-  // Pixels so small that the light of four is that of each.
-  camera.fov = 10
-  camera.updateProjectionMatrix()
-  camera.lookAt(-1000, 300, 0)
-  const light = { direct: 1, diffuse: 1 }
-  const [direct, diffuse] = [uniform(1), uniform(1)]
-  shafts.add({
-    castInto: () => ({
-      transmittance: () => () => direct,
-      diffuse: () => vec4(diffuse)
+gpuTest(
+  'takes light scattered more than once where an occluder dims it',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const { camera, draw, shafts, dispose } = stage(renderer, 25, { quality: 'reference' })
+    // Pixels so small that the light of four is that of each.
+    camera.fov = 10
+    camera.updateProjectionMatrix()
+    camera.lookAt(-1000, 300, 0)
+    const light = { direct: 1, diffuse: 1 }
+    const [direct, diffuse] = [uniform(1), uniform(1)]
+    shafts.add({
+      castInto: () => ({
+        transmittance: () => () => direct,
+        diffuse: () => vec4(diffuse)
+      })
     })
-  })
-  const drawWith = async (changes: Partial<typeof light>): Promise<Picture> => {
-    direct.value = changes.direct ?? 1
-    diffuse.value = changes.diffuse ?? 1
-    return draw()
-  }
-  const all = await drawWith({})
-  shafts.enabled = false
-  expectSame(await draw(), all, 'light that is all there')
-  shafts.enabled = true
-  const [once, often, none, more] = [
-    await drawWith({ diffuse: 0 }),
-    await drawWith({ direct: 0 }),
-    await drawWith({ direct: 0, diffuse: 0 }),
-    await drawWith({ diffuse: 1.5 })
-  ]
-  const errors: number[] = []
-  for (let y = 0; y < size.height; y += 5) {
-    for (let x = 1; x < size.width; x += 7) {
-      for (let k = 0; k < 3; k++) {
-        const [whole, a, b, left, bright] = [all, once, often, none, more].map(
-          picture => picture.at(x, y)[k]
-        )
-        errors.push(left / whole, (a + b) / whole - 1, (bright - whole) / (whole - a) - 0.5)
+    const drawWith = async (changes: Partial<typeof light>): Promise<Picture> => {
+      direct.value = changes.direct ?? 1
+      diffuse.value = changes.diffuse ?? 1
+      return draw()
+    }
+    const all = await drawWith({})
+    shafts.enabled = false
+    expectSame(await draw(), all, 'light that is all there')
+    shafts.enabled = true
+    const [once, often, none, more] = [
+      await drawWith({ diffuse: 0 }),
+      await drawWith({ direct: 0 }),
+      await drawWith({ direct: 0, diffuse: 0 }),
+      await drawWith({ diffuse: 1.5 })
+    ]
+    const errors: number[] = []
+    for (let y = 0; y < size.height; y += 5) {
+      for (let x = 1; x < size.width; x += 7) {
+        for (let k = 0; k < 3; k++) {
+          const [whole, a, b, left, bright] = [all, once, often, none, more].map(
+            picture => picture.at(x, y)[k]
+          )
+          errors.push(left / whole, (a + b) / whole - 1, (bright - whole) / (whole - a) - 0.5)
+        }
       }
     }
-  }
-  const worst = quantile(errors.map(Math.abs), 0.98)
-  t.note(`98 % within ${worst.toFixed(5)}`)
-  // That of the sky volume's own texels included.
-  expectTrue(worst < 0.025, `light is off by ${worst}`)
-  dispose()
-})
+    const worst = quantile(errors.map(Math.abs), 0.98)
+    t.note(`98 % within ${worst.toFixed(5)}`)
+    // That of the sky volume's own texels included.
+    expectTrue(worst < 0.025, `light is off by ${worst}`)
+    dispose()
+  },
+  { backends: ['webgpu'] }
+)

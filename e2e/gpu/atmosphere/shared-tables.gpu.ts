@@ -56,51 +56,59 @@ gpuTest(
   }
 )
 
-gpuTest('an atmosphere that is used again has room for its sun beside other sources', async t => {
-  const renderer = await t.createRenderer(size)
-  const camera = new PerspectiveCamera()
-  camera.position.y = 10
-  camera.updateMatrixWorld()
-  const [never, once] = [false, true].map(isDisposed => {
-    const atmosphere = new Atmosphere()
-    atmosphere.update(renderer, camera)
-    if (isDisposed) atmosphere.dispose()
-    atmosphere.update(renderer, camera)
-    const { tables } = atmosphere
-    tables.addSource({})
-    const { height } = tables.atlas.target
-    atmosphere.dispose()
-    return height
-  })
-  expectTrue(once === never, `an atlas of ${once} rows, where ${never} are needed`)
-})
+gpuTest(
+  'an atmosphere that is used again has room for its sun beside other sources',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const camera = new PerspectiveCamera()
+    camera.position.y = 10
+    camera.updateMatrixWorld()
+    const [never, once] = [false, true].map(isDisposed => {
+      const atmosphere = new Atmosphere()
+      atmosphere.update(renderer, camera)
+      if (isDisposed) atmosphere.dispose()
+      atmosphere.update(renderer, camera)
+      const { tables } = atmosphere
+      tables.addSource({})
+      const { height } = tables.atlas.target
+      atmosphere.dispose()
+      return height
+    })
+    expectTrue(once === never, `an atlas of ${once} rows, where ${never} are needed`)
+  },
+  { backends: ['webgpu'] }
+)
 
-gpuTest('a shell shares the tables of an atmosphere that is not its sun', async t => {
-  const renderer = await t.createRenderer(size)
-  const camera = new PerspectiveCamera(60, size.width / size.height, 0.1, 100)
-  camera.position.z = 2.5
-  camera.updateMatrixWorld()
-  const atmosphere = new Atmosphere({ luminanceScale: 3e-4 })
-  const { parameters, tables } = atmosphere
-  await atmosphere.bake(renderer)
-  const draw = async (shell: AtmosphereShell): Promise<Picture> => {
-    const scene = new Scene().add(shell)
-    const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
-    expectLight(picture, 'shell')
-    return picture
-  }
-  const own = new AtmosphereShell(parameters, 1)
-  const expected = await draw(own)
-  expectTrue(Math.max(...expected.data) > 0.01, 'the shell is black')
-  own.dispose()
-  const shell = new AtmosphereShell(parameters, 1, { tables })
-  // Half floats of another bake, and another scale in the colours.
-  const most = relativeDifferences(await draw(shell), expected).at(-1)!
-  expectTrue(most < 1e-3, `with the tables of an atmosphere a pixel differs by ${most}`)
-  expectTrue(tables.version === 1, `${tables.version} bakes`)
-  atmosphere.dispose()
-  expectTrue(tables.version === 1, 'the tables went with the atmosphere')
-  await draw(shell)
-  shell.dispose()
-  expectTrue(tables.data === null, 'the tables outlast all who use them')
-})
+gpuTest(
+  'a shell shares the tables of an atmosphere that is not its sun',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const camera = new PerspectiveCamera(60, size.width / size.height, 0.1, 100)
+    camera.position.z = 2.5
+    camera.updateMatrixWorld()
+    const atmosphere = new Atmosphere({ luminanceScale: 3e-4 })
+    const { parameters, tables } = atmosphere
+    await atmosphere.bake(renderer)
+    const draw = async (shell: AtmosphereShell): Promise<Picture> => {
+      const scene = new Scene().add(shell)
+      const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
+      expectLight(picture, 'shell')
+      return picture
+    }
+    const own = new AtmosphereShell(parameters, 1)
+    const expected = await draw(own)
+    expectTrue(Math.max(...expected.data) > 0.01, 'the shell is black')
+    own.dispose()
+    const shell = new AtmosphereShell(parameters, 1, { tables })
+    // Half floats of another bake, and another scale in the colours.
+    const most = relativeDifferences(await draw(shell), expected).at(-1)!
+    expectTrue(most < 1e-3, `with the tables of an atmosphere a pixel differs by ${most}`)
+    expectTrue(tables.version === 1, `${tables.version} bakes`)
+    atmosphere.dispose()
+    expectTrue(tables.version === 1, 'the tables went with the atmosphere')
+    await draw(shell)
+    shell.dispose()
+    expectTrue(tables.data === null, 'the tables outlast all who use them')
+  },
+  { backends: ['webgpu'] }
+)

@@ -93,7 +93,7 @@ export class ExposureStage {
     const scene = new Scene()
     scene.add(new SunDirectionalLight(atmosphere), new SkyLightProbe(atmosphere), this.#land)
     if (hasNight) {
-      const luna = moon()
+      const luna = moon({ mapSize: 64 })
       atmosphere.add(milkyWay(), stars(), luna, airglow())
       scene.add(new MoonDirectionalLight(atmosphere, luna), new NightLightProbe(atmosphere))
       scene.add(new SkyLightProbe(atmosphere, luna.source))

@@ -10,6 +10,7 @@ import { ivec2, textureLoad, uv, vec2 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../../../packages/atmosphere/src/air/AtmosphereUniforms'
 import { DiffuseLightTable as BakedTable } from '../../../packages/atmosphere/src/diffuseLight/DiffuseLightTable'
+import { TransmittanceTable as BakedTransmittance } from '../../../packages/atmosphere/src/transmittance/TransmittanceTable'
 import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
 import type { Table, TableRegion } from '../../../packages/atmosphere/src/tables/TableAtlas'
 
@@ -19,13 +20,13 @@ const BAKE_STEPS = 20
 let isReusing = false
 const _readings = new Set<Promise<void>>()
 
-/** Key of a table: all that it is made from, but not the colours, of which it knows none. */
-function keyOf(renderer: Renderer, uniforms: AtmosphereUniforms): string {
+/** Key of a table: its name and all that it is made from, but not the colours, of which it knows none. */
+function keyOf(table: string, renderer: Renderer, uniforms: AtmosphereUniforms): string {
   const backend = 'isWebGPUBackend' in renderer.backend ? 'webgpu' : 'webgl'
   const numbers = Object.entries(uniforms).flatMap(([name, node]) =>
     Array.isArray(node) ? [] : [[name, node.value]]
   )
-  return JSON.stringify([backend, ...numbers])
+  return JSON.stringify([table, backend, ...numbers])
 }
 
 /** RGBA texels of a read-back target, top row first. */
@@ -45,7 +46,9 @@ export async function readTexels<T extends Uint8Array | Uint16Array>(
 }
 
 async function keep(renderer: Renderer, region: TableRegion, key: string): Promise<void> {
-  const halves = Array.from(await region.read(renderer), half => DataUtils.toHalfFloat(half))
+  const values = await region.read(renderer)
+  if (!values.every(value => Number.isFinite(value))) return
+  const halves = Array.from(values, half => DataUtils.toHalfFloat(half))
   localStorage.setItem(key, halves.map(half => String.fromCharCode(half)).join(''))
 }
 
@@ -56,10 +59,31 @@ function restore(renderer: Renderer, region: TableRegion, kept: string): void {
   source.minFilter = source.magFilter = NearestFilter
   source.needsUpdate = true
   const texel = ivec2(uv().mul(vec2(width, height)).floor())
-  const copy = new FragmentPass('Reuse.DiffuseLight', textureLoad(source, texel))
+  const copy = new FragmentPass('Reuse.table', textureLoad(source, texel))
   region.render(renderer, copy)
   copy.dispose()
   source.dispose()
+}
+
+/** The table of optical depth to the sun, reused just as that of diffuse light is. */
+export class TransmittanceTable extends BakedTransmittance {
+  readonly #uniforms: AtmosphereUniforms
+
+  constructor(uniforms: AtmosphereUniforms, region: TableRegion) {
+    super(uniforms, region)
+    this.#uniforms = uniforms
+  }
+
+  override bake(renderer: Renderer): void {
+    const key = keyOf('transmittance', renderer, this.#uniforms)
+    const kept = isReusing ? localStorage.getItem(key) : null
+    if (kept !== null) {
+      restore(renderer, this.region, kept)
+      return
+    }
+    super.bake(renderer)
+    if (isReusing) waitFor(keep(renderer, this.region, key))
+  }
 }
 
 /**
@@ -75,7 +99,7 @@ export class DiffuseLightTable extends BakedTable {
   }
 
   override *bake(renderer: Renderer): Generator<void, void, void> {
-    const key = keyOf(renderer, this.#uniforms)
+    const key = keyOf('diffuse light', renderer, this.#uniforms)
     const kept = isReusing ? localStorage.getItem(key) : null
     if (kept === null) {
       yield* super.bake(renderer)
@@ -103,7 +127,7 @@ export async function keepTables(): Promise<void> {
 }
 
 /**
- * Has atmospheres, from now on, take tables of diffuse light that this or another page of the browser's
+ * Has atmospheres, from now on, take tables of diffuse light and of optical depth that this or another page of the browser's
  * run of tests has baked, of the same parameters on the same backend: bit for bit what they would bake, for
  * a hundredth of the time. A software renderer takes seconds for a bake, longer than for most tests.
  *

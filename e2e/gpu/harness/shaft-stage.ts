@@ -79,7 +79,7 @@ export function stage(
   const scene = new Scene()
   let light = new SunDirectionalLight(atmosphere, 6000)
   if (isMoonlit) {
-    const luna = moon({ direction: atmosphere.sunDirection })
+    const luna = moon({ direction: atmosphere.sunDirection, mapSize: 64 })
     atmosphere.setSunAngles(-50, 180).add(luna)
     light = new MoonDirectionalLight(atmosphere, luna, 6000)
   }
