@@ -7,8 +7,7 @@ import {
   MoonDirectionalLight,
   skyBackground,
   type AirOccluder,
-  type ForwardShafts,
-  type LightShaftsQuality
+  type ForwardShafts
 } from '@welkin/atmosphere'
 import { FloatType, Scene } from 'three'
 import { float, pass } from 'three/tsl'

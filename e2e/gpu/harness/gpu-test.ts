@@ -9,10 +9,10 @@ export interface GpuTest {
   backends: readonly Backend[]
   timeoutSeconds: number
   /**
-   * Backends on which tables and noise are baked and environments filtered as users have it: all or
-   * these. On others a test takes tables of earlier ones, and three's filter has few samples.
+   * True if tables and noise are baked and environments filtered as users have it. Else a test takes tables of earlier ones, and
+   * three's filter has few samples.
    */
-  bakes: boolean | readonly Backend[]
+  bakes: boolean
 }
 
 /** Tests of a file. */
