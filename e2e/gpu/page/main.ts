@@ -54,10 +54,8 @@ window.welkinTests = {
     const { tests, shadowSize } = await load(suite)
     const test = tests.find(candidate => candidate.name === name)
     if (test === undefined) throw new Error(`no test named ${name}`)
-    const { bakes } = test
-    const isWhole = typeof bakes === 'boolean' ? bakes : bakes.includes(backend)
-    reuseTables(!isWhole)
-    filterCoarsely(!isWhole)
+    reuseTables(!test.bakes)
+    filterCoarsely(!test.bakes)
     setShadowSize(shadowSize)
     const { context, finish } = createContext(backend)
     const start = performance.now()
