@@ -47,7 +47,7 @@ import {
   lightning,
   precipitationShafts
 } from '@welkin/clouds'
-import type { CloudsNode, Lightning } from '@welkin/clouds'
+import type { CloudLayers, CloudsNode, Lightning } from '@welkin/clouds'
 import {
   BoxGeometry,
   DataTexture,
@@ -92,6 +92,7 @@ import { worldMap } from './cloud-scene'
 import { coarse } from './cloud-view'
 import { nextFrame } from './graphics'
 import { readPicture, type Picture } from './picture'
+import { setShadowSize } from './shadow-size'
 
 export const worldSize = { width: 32, height: 18 }
 
@@ -112,6 +113,14 @@ function picture(seed: number): DataTexture {
   made.generateMipmaps = true
   made.needsUpdate = true
   return made
+}
+
+/** Layers with rain, hail and virga, and with ice, for halos. */
+function manyLayers(): CloudLayers {
+  const layers = cloudPreset('mixed', 4)
+  layers.at(0).set({ precipitation: { rate: 5, hail: 0.2, virgaDepth: 2000 } })
+  layers.at(3).set({ baseAltitude: 9000, topAltitude: 9500, coverage: 0.3 })
+  return layers
 }
 
 /** A node that reads a picture from a texture of its own. */
@@ -142,12 +151,16 @@ export class World {
   #before: Drawn | null = null
   readonly #owned: { dispose(): void }[] = []
 
-  /** @param isMapped - True if clouds have a map of the world; else the lit material has six of its own. */
+  /**
+   * @param isMapped - True if clouds have a map of the world and all else that they can have; else they are fair weather's, and the
+   *   lit material has six maps of its own.
+   */
   constructor(
     readonly renderer: WebGPURenderer,
     isMapped: boolean
   ) {
     const { atmosphere, camera } = this
+    setShadowSize('least')
     renderer.shadowMap.enabled = true
     const fogs = this.#addLayers(isMapped)
     this.#lights = this.#makeLights()
@@ -157,15 +170,12 @@ export class World {
     const lit = isMapped ? this.#lightUnlit(depth) : this.#pass.getTextureNode()
     // A pass of their own for ground, sky and air: clouds and lightning need room for textures.
     const air = convertToTexture(aerialPerspective(lit, depth, camera, atmosphere, { shafts }))
-    const layers = cloudPreset('mixed', 4)
-    // Deep enough for lightning; and ice, for halos.
-    layers.at(0).set({ topAltitude: 5000, precipitation: { rate: 5, hail: 0.2, virgaDepth: 2000 } })
-    layers.at(3).set({ baseAltitude: 9000, topAltitude: 9500, coverage: 0.3 })
+    const layers = isMapped ? manyLayers() : cloudPreset('fairWeather')
+    // Deep enough for lightning.
+    layers.at(0).set({ topAltitude: 5000 })
     this.#clouds = clouds(air, depth, camera, atmosphere, layers, {
       quality: coarse,
-      worldMap: isMapped ? cloudWorldMap(this.cloudMap) : null,
-      light: new DropletLightTable({ crystals: iceCrystals() }),
-      precipitation: precipitationShafts({ drops: raindrops() })
+      ...(isMapped ? this.#wholeClouds() : {})
     })
     this.#clouds.time = 0
     this.storm = lightning(this.#clouds, { limit: null, exposure: 0.5, time: 0 })
@@ -176,7 +186,7 @@ export class World {
     this.scene.environmentNode = this.#environment
     this.#addLights(isMapped)
     this.#addThings(isMapped)
-    const weather = { lights: [sun, sky], depth, depthCamera: camera, maxParticles: 2000, time: 10 }
+    const weather = { lights: [sun, sky], depth, depthCamera: camera, maxParticles: 500, time: 10 }
     this.#falling = [
       rainfall(atmosphere, { rate: 12, ...weather }),
       snowfall(atmosphere, { rate: 1, ...weather })
@@ -189,6 +199,15 @@ export class World {
     })
     const finished = isMapped ? this.#finish(starry) : starry
     this.#pipeline.outputNode = this.exposure = autoExposure(finished, atmosphere)
+  }
+
+  /** All that clouds can have, which takes long to compile. */
+  #wholeClouds() {
+    return {
+      worldMap: cloudWorldMap(this.cloudMap),
+      light: new DropletLightTable({ crystals: iceCrystals() }),
+      precipitation: precipitationShafts({ drops: raindrops() })
+    }
   }
 
   #addLayers(isMapped: boolean) {
@@ -328,13 +347,12 @@ export class World {
     return lowest - radius < AIR
   }
 
-  /** Sun and moon by their elevations [°]; without the moon's, it is in front of the sun. */
-  setLights(sun: number, moonAt: number | null): void {
+  /** Sun and moon by their elevations [°]. */
+  setLights(sun: number, moonAt: number): void {
     const { atmosphere, luna } = this
-    atmosphere.setSunAngles(moonAt ?? 0, 20)
+    atmosphere.setSunAngles(moonAt, 20)
     luna.direction = atmosphere.sunDirection
     atmosphere.setSunAngles(sun, 190)
-    if (moonAt === null) luna.direction = atmosphere.sunDirection
   }
 
   /** Scales luminance for the light at the camera, so that half floats hold it, and has the environment drawn at once. */
