@@ -7,7 +7,7 @@ import { featureNames, hours, predict, seen, type FeatureName, type Hour } from 
 import { watchFragmentShaders } from './harness/shaders'
 
 const SEED = 20_260
-const COUNT = 36
+const COUNT = 60
 /** Sets on WebGL, of those without clouds and without ground, which has shaders of its own. */
 const COUNT_ON_WEBGL = 8
 /** Least sets that a feature is in. */

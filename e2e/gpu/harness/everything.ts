@@ -347,12 +347,13 @@ export class World {
     return lowest - radius < AIR
   }
 
-  /** Sun and moon by their elevations [°]. */
-  setLights(sun: number, moonAt: number): void {
+  /** Sun and moon by their elevations [°]; without the moon's, it is in front of the sun. */
+  setLights(sun: number, moonAt: number | null): void {
     const { atmosphere, luna } = this
-    atmosphere.setSunAngles(moonAt, 20)
+    atmosphere.setSunAngles(moonAt ?? 0, 20)
     luna.direction = atmosphere.sunDirection
     atmosphere.setSunAngles(sun, 190)
+    if (moonAt === null) luna.direction = atmosphere.sunDirection
   }
 
   /** Scales luminance for the light at the camera, so that half floats hold it, and has the environment drawn at once. */
