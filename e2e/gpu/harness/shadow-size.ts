@@ -4,10 +4,10 @@ declare global {
 }
 
 /**
- * Texels along an edge of a cascade: as users have it, in pictures of stories and where shadows so coarse pass for those, and where
- * shadows are not measured.
+ * Texels along an edge of a cascade: as users have it, in pictures of stories and where shadows so coarse pass for those, where
+ * shadows are not measured, and where, besides, no materials read shafts beside the clouds' shadows, which have no room for these then.
  */
-const sizes = { fine: 256, half: 128, coarse: 64 }
+const sizes = { fine: 256, half: 128, coarse: 64, least: 32 }
 
 export type ShadowSize = keyof typeof sizes
 
