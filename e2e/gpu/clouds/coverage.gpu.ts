@@ -74,16 +74,14 @@ gpuTest(
   async t => {
     const layers = cloudPreset('fairWeather')
     const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
-    const columns = new CloudColumns(scene.field, 128, 200_000, 12)
+    const columns = new CloudColumns(scene.field, 96, 200_000, 12)
     const misses: string[] = []
     // Optical depths as they are, and as a march counts them.
     for (const [coverage, longitude, depthScale] of [
       [0.03, 20, 0.6],
-      [0.05, 20, 0.6],
       [0.1, 20, 0.6],
       [0.2, 20, 1],
       [0.4, 20, 0.6],
-      [0.7, 20, 1],
       [0.08, -120, 1],
       [0.93, 20, 1],
       [0.4, -120, 1],
@@ -116,7 +114,7 @@ gpuTest(
     const layers = new CloudLayers([{}])
     const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
     const { field } = scene
-    const [size, steps, depthScale] = [96, 16, 0.6]
+    const [size, steps, depthScale] = [72, 16, 0.6]
     field.depthScale.value = depthScale
     const columns = new PlanetColumns(field, size, steps)
     const misses: string[] = []
@@ -190,7 +188,7 @@ gpuTest(
       layers.at(0).set({ coverage: 0.5 })
       for (let i = 1; i < layers.length; i++) layers.at(i).set({ coverage: 0 })
       const scene = await cloudScene(t, layers, { longitude: 100, latitude: -30 }, map)
-      const columns = new CloudColumns(scene.field, 96, 600_000, 12)
+      const columns = new CloudColumns(scene.field, 72, 600_000, 12)
       for (const longitude of [100, 60]) {
         scene.field.atmosphere.place({ longitude, latitude: -30 })
         scene.update()

@@ -10,7 +10,7 @@ import { gpuTest, takeFineShadows } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import { alignment, contrasts, placeIn, straighten, type SkySquare } from '../harness/sky-plane'
 
-takeFineShadows()
+takeFineShadows('half')
 
 const canvas = { width: 192, height: 160 }
 /** Edge of the straightened picture [pixels]. */

@@ -20,6 +20,7 @@ import { CloudView, fog, viewSize } from '../harness/cloud-view'
 import type { GpuContext } from '../harness/context'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
+import { setShadowSize } from '../harness/shadow-size'
 
 /** Random scenes by backend, of which each draws shadow maps anew: on WebGL each size and debug view once. */
 const ROUNDS = { webgpu: 7, webgl: 4 }
@@ -70,6 +71,7 @@ async function cloudsOfGlobe(
   layers: CloudLayers,
   precipitation?: PrecipitationShafts
 ) {
+  setShadowSize('least')
   const renderer = await t.createRenderer(viewSize)
   const atmosphere = new Atmosphere()
   atmosphere.frame = 'ecef'

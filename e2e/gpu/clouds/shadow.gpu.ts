@@ -29,6 +29,7 @@ import { extinctionOf, fallenRank, rateOf } from '../../../packages/clouds/test/
 import { cloudExtinction } from '../harness/cloud-extinction'
 import { cloudScene, offsets } from '../harness/cloud-scene'
 import { cloudTransmittance } from '../harness/cloud-transmittance'
+import { drawUnseen } from '../harness/cloud-view'
 import { drawToFloat, random } from '../harness/atmosphere'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'
@@ -62,6 +63,7 @@ gpuTest('clouds cast their shadows on the ground', async t => {
     light
   })
   node.time = 0
+  drawUnseen(node)
   const pipeline = new RenderPipeline(renderer)
   pipeline.outputNode = node
   const draw = () => t.render(renderer, scene, camera, size)
@@ -132,8 +134,8 @@ gpuTest(
       return [30_000 * x, 500 + 9000 * y, 30_000 * z, 0]
     })
     const depths: number[][] = []
-    // Storms of three regions: each has its own share of edges.
-    for (const longitude of [20, 60, -100]) {
+    // Storms of two regions: each has its own share of edges.
+    for (const longitude of [20, -100]) {
       atmosphere.place({ longitude, latitude: 45 }).setSunAngles(28, 130)
       const view = atmosphere.update(renderer, camera)
       field.view.update({ camera })

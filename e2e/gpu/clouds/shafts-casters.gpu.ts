@@ -14,12 +14,10 @@ import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import type { GpuContext } from '../harness/context'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
-import { gpuTest, takeFineShadows } from '../harness/gpu-test'
+import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
 import { addBox, stage, stageSize as size, type Stage } from '../harness/shaft-stage'
-
-takeFineShadows()
 
 /** Sun or moon in the north, soon after it has risen [°]; a deck and the camera over it [m]. */
 const LIGHT = 10

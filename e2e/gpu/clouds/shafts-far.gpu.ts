@@ -1,5 +1,5 @@
 import { CloudLayers } from '@welkin/clouds'
-import { float, vec4 } from 'three/tsl'
+import { float, step, vec3, vec4 } from 'three/tsl'
 import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
 import { QualityUniforms } from '../../../packages/clouds/src/march/quality'
 import { litClouds } from '../../../packages/clouds/src/march/tsl/shadePoints'
@@ -10,33 +10,31 @@ import {
   marchedLoss,
   measuredLoss,
   radians as inRadians,
+  raySize,
   unseenClouds
 } from '../harness/cloud-shafts'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
-import { gpuTest, takeFineShadows } from '../harness/gpu-test'
-import { parameters, stage, stageSize as size } from '../harness/shaft-stage'
-
-takeFineShadows()
+import { gpuTest } from '../harness/gpu-test'
+import { setShadowSize } from '../harness/shadow-size'
+import { parameters, stage } from '../harness/shaft-stage'
 
 const radians = Math.PI / 180
 
-/** A block of cloud [1/m] by the range of each coordinate [m]. Above the equator, x is up, y east and z north. */
-function block(
-  { x, y, z }: Vec3,
-  [west, east]: readonly [number, number],
-  [south, north]: readonly [number, number],
-  [low, high]: readonly [number, number]
-): Float {
-  const isLevel = x.greaterThan(low).and(x.lessThan(high))
-  const isBeside = y.greaterThan(west).and(y.lessThan(east))
-  const isInside = isLevel.and(isBeside).and(z.greaterThan(south)).and(z.lessThan(north))
-  return isInside.select(0.05, 0)
+/**
+ * A block of cloud [1/m] between two corners [m]. Above the equator, x is up, y east and z north. Without branches, which the march that it
+ * becomes a part of would take long to compile.
+ */
+function block(place: Vec3, low: [number, number, number], high: [number, number, number]): Float {
+  const within = step(vec3(...low), place)
+    .mul(step(place, vec3(...high)))
+    .toConst()
+  return within.x.mul(within.y).mul(within.z).mul(0.05)
 }
 
 gpuTest('has a tower of cloud shade the cloud behind it, and not one without a tower', async t => {
-  const renderer = await t.createRenderer(size)
+  const renderer = await t.createRenderer(raySize)
   const sun = 25
   const set = stage(renderer, sun, null)
   // Two clouds beside the camera, alike from it, and a tower north of the one in the east, where the sun is.
@@ -47,11 +45,10 @@ gpuTest('has a tower of cloud shade the cloud behind it, and not one without a t
     new CloudLayers([{ ...fog, baseAltitude: 400, topAltitude: 2400 }]),
     new SparseNoise(),
     ({ offset }) => {
-      const [west, east] = [-middle, middle].map(y =>
-        block(offset, [y - 300, y + 300], [-300, 300], [400, 800])
-      )
-      const tower = block(offset, [middle - 700, middle + 700], [1400, 2600], [400, 2400])
-      return west.add(east).add(tower)
+      const { x, y, z } = offset
+      const corner = middle - 300
+      const both = block(vec3(x, y.abs(), z), [400, corner, -300], [800, corner + 600, 300])
+      return both.add(block(offset, [400, middle - 700, 1400], [2400, middle + 700, 2600]))
     }
   )
   for (let i = 0; i < 2; i++) await draw()
@@ -136,7 +133,8 @@ for (const [label, storm, least] of [
   gpuTest(
     `${label}, as seen from 400 km at dusk`,
     async t => {
-      const renderer = await t.createRenderer(size)
+      setShadowSize('fine')
+      const renderer = await t.createRenderer(raySize)
       const { sun, north, east } = storm
       const set = stage(renderer, sun, { quality: 'reference' })
       const { camera, shafts } = set
@@ -192,7 +190,7 @@ function isBehindDeck(top: number, distance: number, view: number): boolean {
 gpuTest(
   'leaves the light that has passed over a closed deck, after sunset',
   async t => {
-    const renderer = await t.createRenderer(size)
+    const renderer = await t.createRenderer(raySize)
     for (const top of DECK_TOPS) {
       const set = stage(renderer, DUSK, { quality: 'reference' })
       const { shafts } = set

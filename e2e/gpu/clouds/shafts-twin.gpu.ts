@@ -9,6 +9,7 @@ import {
   marchedLoss,
   measuredLoss,
   radians,
+  raySize,
   unseenClouds
 } from '../harness/cloud-shafts'
 import { fog, SparseNoise } from '../harness/cloud-view'
@@ -28,7 +29,7 @@ const MEAN = 0.0015
 gpuTest(
   'takes the light from air under waves of cloud as a float64 march through them',
   async t => {
-    const renderer = await t.createRenderer(size)
+    const renderer = await t.createRenderer(raySize)
     const set = stage(renderer, SUN, { quality: 'reference' })
     const { shafts } = set
     // Above the equator, x is up, y east and z north.

@@ -22,6 +22,7 @@ import {
   marchedLoss,
   measuredLoss,
   radians,
+  raySize,
   unseenClouds,
   type North
 } from '../harness/cloud-shafts'
@@ -29,18 +30,16 @@ import { drawForward, drawToFloat } from '../harness/atmosphere'
 import { coarse, fog, SparseNoise } from '../harness/cloud-view'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
-import { gpuTest, takeFineShadows } from '../harness/gpu-test'
+import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
+import { setShadowSize } from '../harness/shadow-size'
 import { expectSame, stage, stageSize as size } from '../harness/shaft-stage'
-
-takeFineShadows()
 
 const deck = { ...fog, baseAltitude: 1500, topAltitude: 1600 }
 
 /** Decks of a given extinction [1/m] that is a function of the distance north of the eye, and the clear part there. */
 const decks: [string, (north: Float) => Float, (north: number) => boolean][] = [
-  ['a closed deck', () => float(0.5), () => false],
   ['a half plane', north => north.greaterThan(1200).select(0.5, 0), north => north <= 1200],
   [
     'a slit in a deck',
@@ -65,7 +64,8 @@ for (const [name, extinction, isClear] of decks) {
   gpuTest(
     `takes the light from air under ${name}`,
     async t => {
-      const renderer = await t.createRenderer(size)
+      setShadowSize('fine')
+      const renderer = await t.createRenderer(raySize)
       const sun = 40
       const set = stage(renderer, sun, { quality: 'reference' })
       const { shafts } = set
@@ -108,7 +108,7 @@ for (const [name, extinction, isClear] of decks) {
 gpuTest(
   'takes no light under layers that cast no shadow, beside what casts one',
   async t => {
-    const renderer = await t.createRenderer(size)
+    const renderer = await t.createRenderer(raySize)
     const set = stage(renderer, 40, { quality: 'medium' })
     const { node, draw, dispose } = await unseenClouds(
       renderer,
@@ -146,8 +146,9 @@ const eyes = [
 gpuTest(
   'takes the light from air under a deck as seen from among its clouds and from 10 km',
   async t => {
+    setShadowSize('fine')
     const sun = 40
-    const renderer = await t.createRenderer(size)
+    const renderer = await t.createRenderer(raySize)
     const set = stage(renderer, sun, { quality: 'reference' })
     const { node, draw, dispose } = await unseenClouds(
       renderer,
@@ -262,7 +263,7 @@ gpuTest(
 gpuTest(
   'has shafts in front of clouds, by which a closed deck is darker, and none after they are taken out',
   async t => {
-    const renderer = await t.createRenderer(size)
+    const renderer = await t.createRenderer({ width: size.width / 2, height: size.height / 2 })
     const [sun, view] = [40, 4]
     const set = stage(renderer, sun, { quality: 'reference' })
     const { shafts, camera, air, depth, atmosphere } = set
@@ -324,6 +325,8 @@ gpuTest(
 gpuTest(
   'is the same to the last bit under a clear sky, and draws clouds in materials as in the post effect',
   async t => {
+    // Room for what materials read is as wide as the maps.
+    setShadowSize('fine')
     const renderer = await t.createRenderer(size)
     const plain = stage(renderer, 20, null)
     const clear = await plain.draw()
@@ -395,7 +398,7 @@ gpuTest(
 gpuTest(
   'dims light scattered more than once as it dims that on surfaces',
   async t => {
-    const renderer = await t.createRenderer(size)
+    const renderer = await t.createRenderer(raySize)
     const set = stage(renderer, 40, { quality: 'reference' })
     const { node, draw, dispose } = await unseenClouds(
       renderer,

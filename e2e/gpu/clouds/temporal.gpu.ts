@@ -10,6 +10,7 @@ import { gpuTest } from '../harness/gpu-test'
 import type { GpuContext } from '../harness/context'
 import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
+import { setShadowSize } from '../harness/shadow-size'
 
 const [width, height] = [64, 36]
 
@@ -160,6 +161,7 @@ async function withShared(
   body: (shared: Shared) => Promise<void>,
   [width, height]: readonly [number, number] = wide.size
 ): Promise<void> {
+  setShadowSize('least')
   const renderer = await t.createRenderer({ width, height })
   const shared = { renderer, noise: new CloudNoise(), light: new CloudLightTable() }
   await body(shared)

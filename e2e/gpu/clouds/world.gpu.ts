@@ -45,6 +45,7 @@ import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
+import { setShadowSize } from '../harness/shadow-size'
 
 const size = { width: 24, height: 16 }
 /** Shorter steps than `coarse` has: with those an overcast lets 3 % less light through. */
@@ -197,6 +198,7 @@ async function shadesTheGlobe(
 gpuTest(
   'clouds are lit by the moon, light the ground below, and are mirrored',
   async t => {
+    setShadowSize('least')
     const renderer = await t.createRenderer(size)
     renderer.shadowMap.enabled = true
     const shared = { noise: new CloudNoise(), light: new CloudLightTable() }

@@ -14,9 +14,12 @@ import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { distanceToTop } from '../../../packages/atmosphere/src/air/cpu/boundary'
 import { inScatter } from '../../../packages/atmosphere/src/scattering/cpu/scattering'
 import { drawToFloat } from './atmosphere'
-import { coarse } from './cloud-view'
+import { coarse, drawUnseen } from './cloud-view'
 import { nextFrame } from './graphics'
-import { parameters, stageSize as size, type Stage } from './shaft-stage'
+import { parameters, type Stage } from './shaft-stage'
+
+/** Size of pictures of which {@link measuredLoss} reads the middle alone, where clouds have no noise, which such wide pixels would blur. */
+export const raySize = { width: 16, height: 9 }
 
 export const radians = (degrees: number): number => (degrees * Math.PI) / 180
 
@@ -85,6 +88,7 @@ export async function unseenClouds(
     precipitation
   })
   node.time = 0
+  drawUnseen(node)
   const pipeline = new RenderPipeline(renderer)
   pipeline.outputNode = node
   return {
@@ -123,10 +127,11 @@ export const castsOnce = (node: CloudsNode, hasRoom = false): AirOccluder => ({
 
 /** Parts of the light of the middle of the picture that shafts take, at three wavelengths. */
 export async function measuredLoss({ draw, shafts }: Stage): Promise<number[]> {
-  const [x, y] = [size.width / 2, size.height / 2]
-  shafts.enabled = true
-  const shadowed = (await draw()).at(x, y)
-  shafts.enabled = false
-  const lit = (await draw()).at(x, y)
+  const middle = async (enabled: boolean): Promise<number[]> => {
+    shafts.enabled = enabled
+    const picture = await draw()
+    return picture.at(picture.width >> 1, picture.height >> 1)
+  }
+  const [shadowed, lit] = [await middle(true), await middle(false)]
   return [0, 1, 2].map(k => (lit[k] - shadowed[k]) / shafts.source.irradiance.value.getComponent(k))
 }

@@ -120,6 +120,14 @@ export class CloudView {
   }
 }
 
+/**
+ * Has clouds that nobody looks at draw their shadow maps alone, and look-ups of their light: a software renderer takes longer to
+ * compile the march of a view ray than for all of these.
+ */
+export function drawUnseen({ passes }: CloudsNode): void {
+  passes.render = () => undefined
+}
+
 /** Atmosphere about a point at sea level, y up, under a sun 40° high. */
 export const onGround = (): Atmosphere => {
   const atmosphere = new Atmosphere().place({ longitude: 20, latitude: 45 }).setSunAngles(40, 150)

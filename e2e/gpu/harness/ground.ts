@@ -1,6 +1,6 @@
-import type { HeightSource } from '@welkin/terrain'
+import { latticeNoise, latticeNoiseOnCPU, type HeightSource } from '@welkin/terrain'
 import { BoxGeometry, Mesh, MeshBasicMaterial, PerspectiveCamera } from 'three'
-import { vec4 } from 'three/tsl'
+import { float, vec4 } from 'three/tsl'
 import type { GpuContext } from './context'
 
 /** Level ground. */
@@ -14,6 +14,31 @@ export const levelGround: HeightSource = {
     return target
   },
   sample: () => vec4(0)
+}
+
+const noise = { x: 0, y: 0, z: 0, value: 0 }
+const inverse = 1 / 512
+const amplitude = 60
+
+/** Hills 500 m apart: a software renderer draws their pages in a fraction of the time that mountains take. */
+export const hills: HeightSource = {
+  lowest: -1.5 * amplitude,
+  highest: 1.5 * amplitude,
+  variation: distance => 4 * amplitude * inverse * distance,
+  sampleAt({ x, y, z }, target) {
+    latticeNoiseOnCPU(x, y, z, inverse, 0, noise)
+    target.height = amplitude * noise.value
+    target.gradient.set(noise.x, noise.y, noise.z).multiplyScalar(amplitude * inverse)
+    return target
+  },
+  sample({ reference, offset }, shortest) {
+    const { xyz, w } = latticeNoise(reference, offset, float(inverse), float(0))
+    const kept = float(1 / inverse)
+      .div(shortest)
+      .sub(1)
+      .clamp(0, 1)
+    return vec4(xyz.mul(inverse), w).mul(kept.mul(amplitude))
+  }
 }
 
 /** A box in the air over the origin, which casts no shadow yet, and a camera above it that looks down. */

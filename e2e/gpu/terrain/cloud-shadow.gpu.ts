@@ -7,12 +7,12 @@ import { RenderPipeline } from 'three/webgpu'
 import { drawToFloat } from '../harness/atmosphere'
 import { cloudTransmittance } from '../harness/cloud-transmittance'
 import { mean } from '../harness/cloud-scene'
-import { coarse, fog, SparseNoise } from '../harness/cloud-view'
+import { coarse, drawUnseen, fog, SparseNoise } from '../harness/cloud-view'
 import { gpuTest, takeFineShadows } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import { levelGround } from '../harness/ground'
 
-takeFineShadows()
+takeFineShadows('half')
 
 const SIZE = { width: 32, height: 32 }
 
@@ -52,6 +52,7 @@ gpuTest('the ground is as dark under clouds as these let light through', async t
       smoothstep(-0.2, 0.2, x.div(230).sin().add(y.div(310).sin()).add(z.div(270).sin())).mul(0.01)
   })
   node.time = 0
+  drawUnseen(node)
   const pipeline = new RenderPipeline(renderer)
   pipeline.outputNode = node
   terrain.update(renderer, camera, Infinity)

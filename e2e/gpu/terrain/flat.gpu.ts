@@ -1,33 +1,9 @@
 import { Atmosphere } from '@welkin/atmosphere'
-import { latticeNoise, latticeNoiseOnCPU, Terrain, type HeightSource } from '@welkin/terrain'
+import { Terrain } from '@welkin/terrain'
 import { Color, PerspectiveCamera, Scene, Vector3 } from 'three'
-import { float, positionView, vec4 } from 'three/tsl'
+import { positionView, vec4 } from 'three/tsl'
 import { gpuTest } from '../harness/gpu-test'
-
-const noise = { x: 0, y: 0, z: 0, value: 0 }
-const inverse = 1 / 512
-const amplitude = 60
-
-/** Hills 500 m apart. */
-const hills: HeightSource = {
-  lowest: -1.5 * amplitude,
-  highest: 1.5 * amplitude,
-  variation: distance => 4 * amplitude * inverse * distance,
-  sampleAt({ x, y, z }, target) {
-    latticeNoiseOnCPU(x, y, z, inverse, 0, noise)
-    target.height = amplitude * noise.value
-    target.gradient.set(noise.x, noise.y, noise.z).multiplyScalar(amplitude * inverse)
-    return target
-  },
-  sample({ reference, offset }, shortest) {
-    const { xyz, w } = latticeNoise(reference, offset, float(inverse), float(0))
-    const kept = float(1 / inverse)
-      .div(shortest)
-      .sub(1)
-      .clamp(0, 1)
-    return vec4(xyz.mul(inverse), w).mul(kept.mul(amplitude))
-  }
-}
+import { hills } from '../harness/ground'
 
 const SIZE = { width: 64, height: 48 }
 
