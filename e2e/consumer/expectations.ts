@@ -3,8 +3,12 @@ import type { Backend } from '../harness/backend'
 
 type Color = [number, number, number]
 
+/** Size in whose pixels places of a frame are given, whatever its own. */
+const SIZE = { width: 320, height: 180 }
+
 function at({ data, width }: PNG, x: number, y: number): Color {
-  const i = 4 * (y * width + x)
+  const scale = width / SIZE.width
+  const i = 4 * (Math.floor(y * scale) * width + Math.floor(x * scale))
   return [data[i], data[i + 1], data[i + 2]]
 }
 
@@ -42,7 +46,7 @@ function checkClouds(png: PNG): string[] {
   let white = 0
   let blue = 0
   for (let y = 4; y < 80; y += 4) {
-    for (let x = 4; x < png.width; x += 4) {
+    for (let x = 4; x < SIZE.width; x += 4) {
       const [red, , b] = at(png, x, y)
       if (b > 1.25 * red) blue++
       else if (red > 120) white++
@@ -61,8 +65,8 @@ function checkTerrain(png: PNG): string[] {
   const [skyRed, , skyBlue] = at(png, 160, 4)
   if (!(skyBlue > skyRed && skyBlue > 90)) wrong.push(`there is no sky: ${skyRed}, ${skyBlue}`)
   const ground: number[] = []
-  for (let y = 120; y < png.height; y += 6) {
-    for (let x = 4; x < png.width; x += 12) {
+  for (let y = 120; y < SIZE.height; y += 6) {
+    for (let x = 4; x < SIZE.width; x += 12) {
       const color = at(png, x, y)
       ground.push(brightness(color))
       // Grass, rock and haze: nowhere as blue as the sky.
@@ -75,12 +79,12 @@ function checkTerrain(png: PNG): string[] {
   return wrong.slice(0, 5)
 }
 
-/** Checks of the frame that a page of the app (`app/PAGE.html`) draws, at 320×180. */
+/** Checks of the frame that a page of the app (`app/PAGE.html`) draws. */
 export interface Expectation {
   /** Faults of a frame, in words. */
   wrongWith: (png: PNG) => string[]
-  /** Both, unless another page has the same code. */
-  backends?: readonly Backend[]
+  /** Backends on which it is drawn; each has a page at least. */
+  backends: readonly Backend[]
   /** Message on the console that is none of these packages' doing. */
   allows?: RegExp
 }
@@ -90,14 +94,15 @@ const fibersClock = /THREE\.Clock: This module has been deprecated/
 
 /** Expectations by name of the page. */
 export const expectations: Record<string, Expectation> = {
-  index: { wrongWith: checkQuickStart },
-  clouds: { wrongWith: checkClouds },
+  index: { wrongWith: checkQuickStart, backends: ['webgpu'] },
+  clouds: { wrongWith: checkClouds, backends: ['webgpu'] },
   terrain: { wrongWith: checkTerrain, backends: ['webgpu'] },
-  // React makes the renderer; what that does without WebGPU the index shows.
+  // React makes the renderer; what that does without WebGPU webpack's page shows.
   fiber: { wrongWith: checkQuickStart, backends: ['webgpu'], allows: fibersClock },
   fiberClouds: { wrongWith: checkClouds, backends: ['webgpu'], allows: fibersClock },
-  webpack: { wrongWith: checkQuickStart, backends: ['webgpu'] },
+  webpack: { wrongWith: checkQuickStart, backends: ['webgl'] },
   geo: {
+    backends: ['webgpu'],
     wrongWith: png => [
       ...difference(png, 'the globe', 160, 90, [0x22, 0x55, 0xaa]),
       ...difference(png, 'space', 5, 5, [0, 0, 0])

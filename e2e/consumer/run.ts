@@ -20,6 +20,9 @@ const report = new Report()
 /** Longest that a page may take: at half the speed, beside another step, clouds under React take more than 120 s [s]. */
 const limitSeconds = 600
 
+/** Small: it is drawn in software. */
+const viewport = { width: 160, height: 90 }
+
 /** Runs npm, or a command of the app's, and answers with its standard output. */
 function execute(command: string, args: string[], cwd: string): string {
   return execFileSync(command, args, {
@@ -146,7 +149,7 @@ const seconds = (ms: number): string => `${(ms / 1000).toFixed(1)} s`
 async function look(browser: Browser, origin: string, name: string, backend: Backend) {
   const { wrongWith, allows } = expectations[name]
   const label = `the app's ${name} page draws what it should [${backend}]`
-  const page = await browser.newPage({ viewport: { width: 320, height: 180 } })
+  const page = await browser.newPage({ viewport })
   const errors: string[] = []
   let note = ''
   page.on('pageerror', error => errors.push(String(error)))
@@ -195,7 +198,7 @@ async function lookAtAll(folder: string): Promise<void> {
   const browser = await launchChromium()
   try {
     for (const [name, { backends }] of Object.entries(expectations)) {
-      for (const backend of backends ?? (['webgpu', 'webgl'] as const)) {
+      for (const backend of backends) {
         await look(browser, server.origin, name, backend)
       }
     }

@@ -69,9 +69,9 @@ export class World {
   }
 }
 
-/** Pipelines of a name that are made while something is drawn. */
-export async function pipelinesOf(
-  name: string,
+/** Pipelines of some names that are made while something is drawn. */
+export async function pipelinesIn(
+  names: readonly string[],
   draw: (renderer: WebGPURenderer) => () => void
 ): Promise<BuiltPipeline[]> {
   const renderer = await recordingRenderer(16, 9)
@@ -80,16 +80,32 @@ export async function pipelinesOf(
   const frame = draw(renderer)
   for (let i = 0; i < FRAMES; i++) frame()
   await renderer.dispose()
-  return built.filter(each => each.name === name)
+  return built.filter(each => names.includes(each.name))
 }
+
+/** Most textures that shaders of pipelines sample. */
+export const mostTextures = (built: readonly BuiltPipeline[]): number =>
+  Math.max(...built.map(({ fragment }) => fragment.textures))
 
 /** Most textures that shaders of a name sample while something is drawn. */
 export async function texturesOf(
   name: string,
   draw: (renderer: WebGPURenderer) => () => void
 ): Promise<number> {
-  const built = await pipelinesOf(name, draw)
-  return Math.max(...built.map(({ fragment }) => fragment.textures))
+  return mostTextures(await pipelinesIn([name], draw))
+}
+
+/** Most textures of passes of a post effect made of the world, by their names. */
+export async function inPasses(
+  names: readonly string[],
+  effect: (world: World) => Node
+): Promise<number[]> {
+  const built = await pipelinesIn(names, renderer => {
+    const pipeline = new RenderPipeline(renderer)
+    pipeline.outputNode = effect(new World())
+    return () => pipeline.render()
+  })
+  return names.map(name => mostTextures(built.filter(each => each.name === name)))
 }
 
 /** Textures of the lit material, with something added. */
@@ -101,12 +117,10 @@ export const inLit = (add: (world: World) => void): Promise<number> =>
   })
 
 /** Textures of a pass, by default the last, of a post effect made of the world. */
-export const inPass = (effect: (world: World) => Node, name = 'RenderPipeline'): Promise<number> =>
-  texturesOf(name, renderer => {
-    const pipeline = new RenderPipeline(renderer)
-    pipeline.outputNode = effect(new World())
-    return () => pipeline.render()
-  })
+export const inPass = async (
+  effect: (world: World) => Node,
+  name = 'RenderPipeline'
+): Promise<number> => (await inPasses([name], effect))[0]
 
 /** Textures of the last pass and of the lit material, with layers in the sky. */
 export const withLayers = async (layers: () => SkyLayer[]): Promise<[number, number]> => [

@@ -1,9 +1,10 @@
 import { fileURLToPath } from 'node:url'
-import type { Browser, Page } from 'playwright-core'
+import type { BrowserContext, Page } from 'playwright-core'
 import { worldData } from '../../stories/vite/worldData.ts'
 import { launchChromium } from '../harness/browser'
 import { bundlePage } from '../harness/bundle'
 import { withLimit } from '../harness/limit'
+import { replaceModules } from '../harness/replaceModules'
 import { Report } from '../harness/report'
 import { serveStatic } from '../harness/serve'
 import type { ExplorerState } from '../../stories/src/moving/Explorer'
@@ -56,8 +57,8 @@ async function addressAfter(page: Page, before: string): Promise<string> {
 }
 
 /** *Plain scene* at an address. */
-async function open(browser: Browser, url: string): Promise<Page> {
-  const page = await browser.newPage({ viewport })
+async function open(context: BrowserContext, url: string): Promise<Page> {
+  const page = await context.newPage()
   page.on('pageerror', error => report.fail('page error', error.stack ?? error.message))
   await page.goto(url)
   await page.waitForFunction(() => 'welkinMoving' in window, null, { timeout: waitMilliseconds })
@@ -205,8 +206,8 @@ async function helpAgain(page: Page): Promise<void> {
   report.pass('H and a button bring it back')
 }
 
-async function move(browser: Browser, origin: string): Promise<void> {
-  const page = await open(browser, `${origin}/index.html`)
+async function move(context: BrowserContext, origin: string): Promise<void> {
+  const page = await open(context, `${origin}/index.html`)
   const start = page.url()
   const help = (await page.textContent('.welkin-help')) ?? ''
   report.check(help.includes('WASD'), 'the page says how one moves', help)
@@ -246,7 +247,7 @@ async function move(browser: Browser, origin: string): Promise<void> {
   report.check(link.includes('#view='), 'the address has the view', link)
   await page.close()
 
-  const again = await open(browser, link)
+  const again = await open(context, link)
   const back = await look(again)
   const numbers = ['x', 'y', 'z', 'heading', 'pitch', 'walking'] as const
   const worst = Math.max(...numbers.map(key => Math.abs(back[key] - rest[key])))
@@ -260,12 +261,15 @@ async function move(browser: Browser, origin: string): Promise<void> {
 const root = fileURLToPath(new URL('page', import.meta.url))
 const storybook = startStorybook()
 const server = await serveStatic([
-  { path: '/', folder: await bundlePage(root, { 'plain.stories': stories }, [worldData()]) }
+  {
+    path: '/',
+    folder: await bundlePage(root, { 'plain.stories': stories }, [replaceModules(), worldData()])
+  }
 ])
 const browser = await launchChromium()
 const start = performance.now()
 try {
-  await withLimit(move(browser, server.origin), limitSeconds)
+  await withLimit(move(await browser.newContext({ viewport }), server.origin), limitSeconds)
   await withLimit(testLink(browser, (await storybook).origin, report), linkLimitSeconds)
 } catch (error) {
   report.fail('moving', String(error))

@@ -52,14 +52,17 @@ import { expect, it } from 'vitest'
 import {
   inLit,
   inPass,
+  inPasses,
   LIT,
+  mostTextures,
   picture,
-  pipelinesOf,
+  pipelinesIn,
   stated,
   texturesOf,
   withLayers,
   World
 } from '../harness/sampledTextures'
+import type { BuiltPipeline } from '../headless/traceShaders'
 
 it('features of the atmosphere sample as many textures as its README says', async () => {
   // Besides the pass itself: its colour, its depth and the air; and in the material three's own table.
@@ -226,10 +229,8 @@ it('features of the clouds sample as many textures as their README says', async 
     const feature = worldMap === null ? '`cloudShadow`' : '`cloudShadow`, with a `worldMap`'
     expect(['–', `${shaded - lit - 1}`]).toEqual(stated('clouds', `${feature} |`))
   }
-  const march = await inPass(world => world.clouds(picture()), 'Welkin.CloudsMarch')
-  expect(march).toBe(8)
-  const shade = await inPass(world => world.clouds(picture()), 'Welkin.CloudsShade')
-  expect(shade).toBe(11)
+  const passesOfClouds = ['Welkin.CloudsMarch', 'Welkin.CloudsShade']
+  expect(await inPasses(passesOfClouds, world => world.clouds(picture()))).toEqual([8, 11])
   const rainy = await inPass(({ air, depth, camera, atmosphere }) => {
     const light = new DropletLightTable({ crystals: iceCrystals() })
     const precipitation = precipitationShafts({ drops: raindrops() })
@@ -238,42 +239,23 @@ it('features of the clouds sample as many textures as their README says', async 
   }, 'Welkin.CloudsShade')
   // What falls is laid over that light by passes of its own.
   expect(rainy).toBe(13)
-  // Bows cost nothing where nothing falls: their table is read in the pass of what falls, once a ray that meets any.
-  const [smooth, bowed] = await Promise.all(
-    [undefined, raindrops()].map(drops =>
-      Promise.all(
-        ['Welkin.CloudsShade', 'Welkin.CloudsFall', 'Welkin.CloudsMarch'].map(name =>
-          inPass(({ air, depth, camera, atmosphere }) => {
-            const precipitation = precipitationShafts({ drops })
-            return clouds(air, depth, camera, atmosphere, cloudPreset('shower'), { precipitation })
-          }, name)
-        )
-      )
-    )
-  )
-  expect(bowed).toEqual([smooth[0], smooth[1] + 1, smooth[2]])
   // Casters in sunlight and in moonlight, one with textures of its own, add none: they have a pass of their own, with room for others.
-  const passes = [
-    ['Welkin.CloudsShade', rainy],
-    ['Welkin.CloudsCast', 10]
-  ] as const
-  for (const [name, textures] of passes) {
-    const cast = await inPass(({ air, depth, camera, atmosphere, sun }) => {
-      const light = new DropletLightTable({ crystals: iceCrystals() })
-      const precipitation = precipitationShafts({ drops: raindrops() })
-      const options = { light, precipitation, worldMap: cloudWorldMap(picture()) }
-      const luna = moon()
-      atmosphere.add(luna)
-      const node = clouds(air, depth, camera, atmosphere, cloudPreset('shower'), options)
-      for (const each of [sun, new MoonDirectionalLight(atmosphere, luna)]) {
-        each.castShadow = true
-        const hills = heightFieldShadow(picture(), new Matrix4())
-        lightShafts(atmosphere, camera, each).add(cloudAirShadow(node), hills)
-      }
-      return node
-    }, name)
-    expect([name, cast]).toEqual([name, textures])
-  }
+  const castPasses = ['Welkin.CloudsShade', 'Welkin.CloudsCast']
+  const cast = await inPasses(castPasses, ({ air, depth, camera, atmosphere, sun }) => {
+    const light = new DropletLightTable({ crystals: iceCrystals() })
+    const precipitation = precipitationShafts({ drops: raindrops() })
+    const options = { light, precipitation, worldMap: cloudWorldMap(picture()) }
+    const luna = moon()
+    atmosphere.add(luna)
+    const node = clouds(air, depth, camera, atmosphere, cloudPreset('shower'), options)
+    for (const each of [sun, new MoonDirectionalLight(atmosphere, luna)]) {
+      each.castShadow = true
+      const hills = heightFieldShadow(picture(), new Matrix4())
+      lightShafts(atmosphere, camera, each).add(cloudAirShadow(node), hills)
+    }
+    return node
+  })
+  expect(cast).toEqual([rainy, 10])
   const flashing = await inPass(world => {
     const node = world.clouds()
     lightning(node)
@@ -332,9 +314,10 @@ function readsOf(source: string): string[] {
 }
 
 it('a bow costs nothing where none is: it is looked up once, on rays that have met rain', async () => {
-  const [smooth, bowed] = await Promise.all(
+  const names = ['Welkin.CloudsShade', 'Welkin.CloudsFall', 'Welkin.CloudsMarch']
+  const [[textures, smooth], [bowedTextures, bowed]] = await Promise.all(
     [undefined, raindrops()].map(async drops => {
-      const [{ source }] = await pipelinesOf('Welkin.CloudsFall', renderer => {
+      const built = await pipelinesIn(names, renderer => {
         const { air, depth, camera, atmosphere } = new World()
         const pipeline = new RenderPipeline(renderer)
         const precipitation = precipitationShafts({ drops })
@@ -342,15 +325,19 @@ it('a bow costs nothing where none is: it is looked up once, on rays that have m
         pipeline.outputNode = clouds(air, depth, camera, atmosphere, layers, { precipitation })
         return () => pipeline.render()
       })
-      return readsOf(source)
+      const ofName = (name: string): BuiltPipeline[] => built.filter(each => each.name === name)
+      const counts = names.map(name => mostTextures(ofName(name)))
+      return [counts, readsOf(ofName('Welkin.CloudsFall')[0].source)] as const
     })
   )
+  // The pass of what falls alone reads the table of bows.
+  expect(bowedTextures).toEqual([textures[0], textures[1] + 1, textures[2]])
   expect(bowed.length).toBe(smooth.length + 1)
-  const textures = (reads: readonly string[]): (string | undefined)[] =>
+  const namesIn = (reads: readonly string[]): (string | undefined)[] =>
     reads.map(read => read.split(' ').at(-1))
   const phase = bowed.filter((_, i) => {
-    const name = textures(bowed)[i]
-    return textures(bowed).filter(each => each === name).length === 1
+    const name = namesIn(bowed)[i]
+    return namesIn(bowed).filter(each => each === name).length === 1
   })
   // Not in the march's loop, and behind the condition that something was met.
   const added = phase.filter(read => /^if \( \( \w+\.x > 0\.0001 \) \) \{ \w+$/.test(read))

@@ -30,7 +30,7 @@ const usage = `npm run validate -- [options]
   --clouds FILE              clouds of simple shapes, by default e2e/reference/cloud_slab.json;
                              with --path march only if named
   --backend webgpu|webgl     by default webgpu
-  --path volume|march        how the air along a ray is found, by default volume
+  --path volume|march        how the air along a ray is found, by default volume; or both (volume,march), each in turn
   --json                     print JSON alone; missed goals go to standard error
   --worst N                  also list the N largest errors of each quantity; not with --json
   --check                    exit with 1 if a goal is missed, with --json as without
@@ -43,6 +43,7 @@ const usage = `npm run validate -- [options]
                              or several (medium,high), each in turn,
                              --reversed for a reversed depth buffer, --forward for materials that draw
                              the air themselves, --all for post effect and materials on both backends,
+                             and of qualities but the first for WebGPU's post effect alone,
                              --every N for every Nth camera of the file alone
   --export-clouds OUT        instead: writes clouds as OUT.raw (float32 extinction [1/m], z, y, x) and
                              OUT.json; with --preset NAME, --size 6000 and --cell 20 [m], --longitude and
@@ -129,10 +130,8 @@ async function main(): Promise<void> {
     console.log(usage)
     return
   }
-  const where = {
-    backend: choice<Backend>('backend', values.backend, backends),
-    path: choice<Path>('path', values.path, ['volume', 'march'])
-  }
+  const where = { backend: choice<Backend>('backend', values.backend, backends) }
+  const paths = values.path.split(',').map(name => choice<Path>('path', name, ['volume', 'march']))
   const worst = count('worst', values.worst)
   const coverage =
     values.coverage === undefined
@@ -187,10 +186,18 @@ async function main(): Promise<void> {
     const every = Math.max(count('every', values.every), 1)
     const { parameters } = readSkyReference(air)
     const isReversed = values.reversed
-    const ways = (values.all ? backends : [where.backend]).flatMap(backend =>
-      (values.all ? [false, true] : [values.forward]).flatMap(isForward =>
-        qualities.map(quality => ({ backend, quality, isReversed, isForward }))
-      )
+    // More samples are the same code on either backend, and in materials.
+    const [usual, ...others] = qualities
+    const usualWays = (values.all ? backends : [where.backend]).flatMap(backend =>
+      (values.all ? [false, true] : [values.forward]).map(isForward => ({
+        backend,
+        isForward,
+        isReversed,
+        quality: usual
+      }))
+    )
+    const ways = usualWays.concat(
+      others.map(quality => Object.assign({}, usualWays[0], { quality }))
     )
     const all: object[] = []
     for (const [i, figures] of (await validateShafts(file, parameters, ways, every)).entries()) {
@@ -211,51 +218,54 @@ async function main(): Promise<void> {
   const sky = skyFile === undefined ? undefined : readSkyReference(skyFile)
   let colors = spectralFile === undefined ? undefined : readColorReference(spectralFile)
   if (colors?.length === 0) colors = undefined
-  const requests = [
-    ...(sky === undefined ? [] : [skyRequest(sky, where)]),
-    ...(colors === undefined ? [] : [colorRequest(colors, where)])
-  ]
+  const requests = paths.flatMap(path => [
+    ...(sky === undefined ? [] : [skyRequest(sky, { ...where, path })]),
+    ...(colors === undefined ? [] : [colorRequest(colors, { ...where, path })])
+  ])
   if (requests.length === 0) throw new Error('there is nothing to compare: name a file')
   const results = await evaluateInBrowser(requests)
 
   // The air's path makes no difference to them.
-  const hasClouds = values.clouds !== undefined || where.path === 'volume'
+  const hasClouds = values.clouds !== undefined || paths.includes('volume')
   const cloudsFile = hasClouds ? input(values.clouds, 'cloud_slab.json') : undefined
   const clouds =
     cloudsFile === undefined ? undefined : await validateClouds(cloudsFile, where.backend)
 
-  let quantities: SkyComparisons = {}
-  let spectral: ColorFigures | undefined
-  let sun: Comparison[] = []
-  if (sky !== undefined) {
-    const result = results.shift()!
-    quantities = compareSky(sky, result)
-    sun = compareSun(sky, result)
-  }
-  if (colors !== undefined) spectral = compareColors(colors, results.shift()!)
-  const statistics = Object.fromEntries(
-    Object.entries(quantities).map(([name, list]) => [name, bandStatistics(list)])
-  )
-  const missed = missedGoals(quantities, statistics, spectral)
-  if (clouds !== undefined) missed.push(...missedCloudGoals(clouds))
-  tellMissed(missed)
-  if (values.json) {
-    const all = {
+  const all: object[] = []
+  for (const [i, path] of paths.entries()) {
+    const cloudsHere = i === 0 ? clouds : undefined
+    let quantities: SkyComparisons = {}
+    let spectral: ColorFigures | undefined
+    let sun: Comparison[] = []
+    if (sky !== undefined) {
+      const result = results.shift()!
+      quantities = compareSky(sky, result)
+      sun = compareSun(sky, result)
+    }
+    if (colors !== undefined) spectral = compareColors(colors, results.shift()!)
+    const statistics = Object.fromEntries(
+      Object.entries(quantities).map(([name, list]) => [name, bandStatistics(list)])
+    )
+    const missed = missedGoals(quantities, statistics, spectral)
+    if (cloudsHere !== undefined) missed.push(...missedCloudGoals(cloudsHere))
+    tellMissed(missed)
+    all.push({
       ...statistics,
       ...(spectral === undefined ? {} : { spectral }),
-      ...(clouds === undefined ? {} : { clouds })
-    }
-    print(JSON.stringify(all, null, 2))
-    return
+      ...(cloudsHere === undefined ? {} : { clouds: cloudsHere })
+    })
+    if (values.json) continue
+    console.log(`${path} path on ${where.backend}\n`)
+    printQuantities(quantities, statistics)
+    printSun(sun)
+    if (spectral !== undefined) printColors(spectral)
+    if (cloudsHere !== undefined) printClouds(cloudsHere)
+    for (const [name, list] of Object.entries(quantities)) printWorst(name, list, worst)
+    console.log(missed.length === 0 ? '\nAll goals are met.\n' : '\nGoals missed:')
+    for (const goal of missed) console.log(`  ${goal}`)
   }
-  console.log(`${where.path} path on ${where.backend}\n`)
-  printQuantities(quantities, statistics)
-  printSun(sun)
-  if (spectral !== undefined) printColors(spectral)
-  if (clouds !== undefined) printClouds(clouds)
-  for (const [name, list] of Object.entries(quantities)) printWorst(name, list, worst)
-  console.log(missed.length === 0 ? '\nAll goals are met.' : '\nGoals missed:')
-  for (const goal of missed) console.log(`  ${goal}`)
+  // One path as itself, several as a list: one text of JSON.
+  if (values.json) print(JSON.stringify(all.length === 1 ? all[0] : all, null, 2))
 }
 
 try {

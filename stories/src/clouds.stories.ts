@@ -228,8 +228,7 @@ export const Fog: Story = {
 /** The sun is about to set, and reddens ice clouds from below. */
 export const Cirrus: Story = {
   name: 'Cirrus at dusk',
-  args: { ...sky('cirrus'), heading: 290, pitch: 12, hour: 24.6, exposure: 2 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { ...sky('cirrus'), heading: 290, pitch: 12, hour: 24.6, exposure: 2 }
 }
 
 /** The cloud cover of a real day, from 400 km; fly down to the ground. */

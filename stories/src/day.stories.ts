@@ -67,10 +67,12 @@ export const Dusk: Story = {
 }
 
 /** The moon, full the day before, has risen. */
-export const Moonrise: Story = { args: { hour: 21, paused: true }, tags: ['screenshot'] }
+export const Moonrise: Story = {
+  args: { hour: 21, paused: true },
+  tags: ['screenshot', 'webgpu-only']
+}
 
 /** A fortnight later there is no moon. */
 export const Night: Story = {
-  args: { season: 0.237, hour: 1, paused: true },
-  tags: ['screenshot', 'webgpu-only']
+  args: { season: 0.237, hour: 1, paused: true }
 }

@@ -38,8 +38,7 @@ export const DiamondRing: Story = {
 
 /** Half an hour before, through a dark filter. */
 export const Partial: Story = {
-  args: { hour: 18.2, fieldOfView: 1, exposure: -16 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { hour: 18.2, fieldOfView: 1, exposure: -16 }
 }
 
 /** The land a minute before totality: a hundredth of the sun lights it, as it still stands high. */

@@ -32,4 +32,4 @@ export default meta
 type Story = StoryObj<FlatWorldArgs>
 
 /** Blocks on hills by a lake, on a plane: no planet, no longitudes. */
-export const Hills: Story = { tags: ['screenshot'] }
+export const Hills: Story = { tags: ['screenshot', 'webgpu-only'] }

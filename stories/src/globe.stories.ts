@@ -62,14 +62,12 @@ export const Street: Story = { tags: ['screenshot'] }
 
 export const Rooftops: Story = {
   name: '1 km',
-  args: { place: 'rooftops', hour: 6.5 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { place: 'rooftops', hour: 6.5 }
 }
 
 export const Coast: Story = {
   name: '10 km',
-  args: { place: 'coast', hour: 7 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { place: 'coast', hour: 7 }
 }
 
 export const Orbit: Story = {

@@ -81,7 +81,7 @@ export const Rainbow: Story = {
 
 /** The sun behind one's back, and mist before one. */
 export const Fogbow: Story = {
-  tags: ['screenshot'],
+  tags: ['screenshot', 'webgpu-only'],
   args: { view: 'fogbow', sun: VIEWS.fogbow.sun }
 }
 

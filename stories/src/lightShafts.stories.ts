@@ -79,8 +79,7 @@ export const Storm: Story = { name: "Storm's shadow from 9 km", args: argsOf('st
 /** Rays that run together opposite the sunset. */
 export const Opposite: Story = {
   name: 'Anticrepuscular rays',
-  args: argsOf('opposite'),
-  tags: ['screenshot', 'webgpu-only']
+  args: argsOf('opposite')
 }
 
 /** Moonlight through the gaps of a deck. */

@@ -76,8 +76,7 @@ type Story = StoryObj<MoonArgs>
 
 /** The first quarter of May 2026 in a telescope, libration and tilt as they were. */
 export const FirstQuarter: Story = {
-  args: { exposure: 2.5 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { exposure: 2.5 }
 }
 
 /** Full, 5 days later: flat, without a dark limb. */

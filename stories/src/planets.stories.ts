@@ -65,7 +65,7 @@ export default meta
 
 type Story = StoryObj<PlanetsArgs>
 
-export const MarsNoon: Story = { tags: ['screenshot', 'webgpu-only'] }
+export const MarsNoon: Story = {}
 
 /** Dust throws blue light closer to the sun than red. */
 export const MarsSunset: Story = {

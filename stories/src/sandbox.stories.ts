@@ -99,7 +99,7 @@ type Story = StoryObj<SandboxArgs>
 
 const preset = (name: PresetName) => ({ preset: name, shown: name, ...presets[name] })
 
-export const Earth: Story = { tags: ['screenshot'] }
+export const Earth: Story = { tags: ['screenshot', 'webgpu-only'] }
 
 /** Mars's air, with sun and moon of the sliders. */
 export const Mars: Story = { args: { ...preset('mars'), sunElevation: 25 } }

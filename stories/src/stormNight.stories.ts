@@ -55,7 +55,7 @@ export default meta
 type Story = StoryObj<StormArgs>
 
 /** A storm over the sea; switch the flashes on. As a single frame, one to the ground. */
-export const Ground: Story = { name: 'From the ground', tags: ['screenshot'] }
+export const Ground: Story = { name: 'From the ground', tags: ['screenshot', 'webgpu-only'] }
 
 /** Beside the towers, which are lit from inside. */
 export const Aeroplane: Story = { name: 'From an aeroplane', args: { view: 'aeroplane' } }

@@ -93,4 +93,4 @@ export const Shafts: Story = {
 export const Range: Story = { args: { view: 'range' }, tags: ['screenshot', 'webgpu-only'] }
 
 /** The whole planet: the same mesh. */
-export const Globe: Story = { args: { view: 'globe' }, tags: ['screenshot'] }
+export const Globe: Story = { args: { view: 'globe' }, tags: ['screenshot', 'webgpu-only'] }

@@ -2,6 +2,7 @@ import { Vector3 } from 'three'
 import { modules } from 'virtual:modules'
 import type { mount } from '../../../stories/src/mount'
 import type { ExplorerState } from '../../../stories/src/moving/Explorer'
+import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
 
 /** Frames over which a speed is measured. */
 const FRAMES = 12
@@ -29,6 +30,9 @@ declare global {
   }
 }
 
+// The page that a link opens takes the tables of the first.
+reuseTables(true)
+
 const show: MovingPage['show'] = async (file, story) => {
   const stories = (await modules[`${file}.stories`]?.()) as Record<string, Story>
   const { default: meta, [story]: shown } = stories
@@ -41,6 +45,7 @@ const show: MovingPage['show'] = async (file, story) => {
   while (document.body.dataset.ready === undefined) {
     await new Promise(resolve => setTimeout(resolve, 20))
   }
+  await keepTables()
 }
 
 const look = (): ExplorerState => window.welkinScene!.explorer!.state

@@ -13,6 +13,8 @@ import type { Float, Vec4 } from '../../../packages/atmosphere/src/tsl-types'
 import { viewNodes, type ViewNodes } from '../../../packages/atmosphere/src/view/ViewNodes'
 import { createContext } from '../../gpu/harness/context'
 import { evaluateOnGpu } from '../../gpu/harness/evaluate'
+import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
+import { requestOffscreenFrames } from '../../harness/offscreenFrames'
 import type { EvaluationRequest, EvaluationResult, Viewpoint, Path, RayRequest } from '../request'
 import { RayBatch, type RayNodes } from './RayBatch'
 import './clouds'
@@ -25,6 +27,9 @@ declare global {
     welkinEvaluate: (request: EvaluationRequest) => Promise<EvaluationResult>
   }
 }
+
+requestOffscreenFrames()
+reuseTables(true)
 
 /** Steps of the marched path. */
 const MARCH_STEPS = 12
@@ -130,6 +135,7 @@ window.welkinEvaluate = async request => {
   try {
     const renderer = await context.createRenderer()
     await atmosphere.bake(renderer)
+    await keepTables()
     result = {
       ...(await evaluateRays(renderer, atmosphere, request)),
       ...(await evaluateGrounds(renderer, atmosphere, request.grounds))

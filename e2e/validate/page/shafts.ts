@@ -29,6 +29,7 @@ import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { createContext } from '../../gpu/harness/context'
 import { nextFrame } from '../../gpu/harness/graphics'
 import { readPicture } from '../../gpu/harness/picture'
+import { keepTables } from '../../gpu/harness/reuse-tables'
 import type { Backend } from '../../harness/backend'
 
 /** Opaque box: least and greatest x, y and z of a frame whose y is up [m]. */
@@ -203,6 +204,7 @@ window.welkinShafts = async request => {
     const renderer = await context.createRenderer({ ...size, reversedDepthBuffer: isReversed })
     renderer.shadowMap.enabled = true
     await atmosphere.bake(renderer)
+    await keepTables()
     for (const view of views) results.push(await drawView(renderer, atmosphere, view, request))
   } finally {
     atmosphere.dispose()

@@ -1,16 +1,10 @@
 import fc from 'fast-check'
 import { PerspectiveCamera, Vector3 } from 'three'
 import { describe, expect, it } from 'vitest'
-import {
-  Atmosphere,
-  AtmosphereParameters,
-  DayCycle,
-  exposureFor,
-  exposureOfIlluminance
-} from '@welkin/atmosphere'
+import { Atmosphere, DayCycle, exposureFor, exposureOfIlluminance } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
-import { solveDiffuseLight } from '../../src/diffuseLight/cpu/solveDiffuseLight'
 import { number, runs } from '../arbitraries'
+import { solvedLight } from '../solvedLight'
 
 const DAY = 86_400_000
 const noon = new Date('2026-06-21T12:00:00Z')
@@ -244,7 +238,7 @@ describe('exposure', () => {
 
   const earth = new Atmosphere()
   const solved = new Atmosphere()
-  solved.tables.data = solveDiffuseLight(new AtmosphereParameters())
+  solved.tables.data = solvedLight()
 
   it.each([
     ['with tables', solved],

@@ -14,11 +14,7 @@ import { spectralToLinearSRGB } from '../../src/air/cpu/color'
 import { groundRadiance, skyRadiance } from '../../src/scattering/cpu/scattering'
 import { solveDiffuseLight } from '../../src/diffuseLight/cpu/solveDiffuseLight'
 import { lightTransmittance } from '../../src/transmittance/cpu/transmittance'
-
-const QUICK = {
-  sun: { elevations: 8, azimuths: 8, steps: 6 },
-  diffuse: { elevations: 5, azimuths: 4, steps: 4 }
-}
+import { NONE, QUICK } from '../solvedLight'
 
 /** Part of the light of a sun at the zenith that arrives at the ground. */
 const transmittanceTo = (parameters: AtmosphereParameters): number[] =>
@@ -86,7 +82,7 @@ describe('planets', () => {
     const moon = airlessParameters()
     expect(moon.isAirless).toBe(true)
     expect(marsParameters({ dust: 0 }).isAirless).toBe(false)
-    const light = solveDiffuseLight(moon, QUICK)
+    const light = solveDiffuseLight(moon, NONE)
     const ray = { radius: moon.bottomRadius + 2, cosView: 0.3, cosLight: 0.5, cosViewLight: 0.6 }
     expect(skyRadiance(moon, light, ray)).toEqual([0, 0, 0, 0])
     groundRadiance(moon, light, 0.5).forEach((value, i) => {

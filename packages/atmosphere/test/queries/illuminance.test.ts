@@ -7,8 +7,10 @@ import {
   standardEarthParameters,
   sunIlluminanceAt
 } from '@welkin/atmosphere'
+import type { DiffuseLightData } from '../../src/diffuseLight/cpu/diffuseLight'
 import { solveDiffuseLight } from '../../src/diffuseLight/cpu/solveDiffuseLight'
 import { almanacIlluminance, NIGHT_ILLUMINANCE } from '../../src/night/cpu/twilight'
+import { solvedLight } from '../solvedLight'
 
 const luminance = ([r, g, b]: readonly number[]): number => 0.2126 * r + 0.7152 * g + 0.0722 * b
 
@@ -38,9 +40,12 @@ describe('sunIlluminanceAt', () => {
 
 describe('twilight', () => {
   /** Light of sun and sky on level ground over the almanac's, by the sun's elevation [°]. */
-  function overAlmanac(parameters: AtmosphereParameters): (elevation: number) => number {
+  function overAlmanac(
+    parameters: AtmosphereParameters,
+    light: DiffuseLightData
+  ): (elevation: number) => number {
     const atmosphere = new Atmosphere({ parameters })
-    atmosphere.tables.data = solveDiffuseLight(parameters)
+    atmosphere.tables.data = light
     const [place, up] = [new Vector3(), new Vector3(0, 1, 0)]
     return elevation => {
       atmosphere.setSunAngles(elevation, 30)
@@ -52,7 +57,8 @@ describe('twilight', () => {
   }
 
   it('and day are within 25 % of the almanac in the standard atmosphere, until the sun is 12° down', () => {
-    const ratio = overAlmanac(standardEarthParameters())
+    const parameters = standardEarthParameters()
+    const ratio = overAlmanac(parameters, solveDiffuseLight(parameters))
     for (let elevation = 90; elevation >= -18; elevation--) {
       // Later in the evening the night sky has its share, which the almanac counts.
       const night = NIGHT_ILLUMINANCE / almanacIlluminance(elevation)
@@ -66,7 +72,7 @@ describe('twilight', () => {
   it('is up to 1.9 times as bright in the default air, which has too many molecules high up', () => {
     // At 50 km exp(−h/8 km) is 2.3 times the density of the U.S. Standard Atmosphere. The bounds are
     // what the default has, with 10 % to spare.
-    const ratio = overAlmanac(new AtmosphereParameters())
+    const ratio = overAlmanac(new AtmosphereParameters(), solvedLight())
     for (const [elevation, expected] of [
       [90, 0.95],
       [20, 1.33],

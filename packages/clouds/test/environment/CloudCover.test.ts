@@ -7,7 +7,6 @@ import {
   moonIlluminanceAt,
   NIGHT_ILLUMINANCE,
   skyIlluminanceAt,
-  solveDiffuseLight,
   sunIlluminanceAt,
   type Triple
 } from '@welkin/atmosphere'
@@ -15,6 +14,7 @@ import fc from 'fast-check'
 import { PerspectiveCamera, Vector3 } from 'three'
 import { describe, expect, it } from 'vitest'
 import { CloudCover, CloudLayers, CloudLightTable, cloudPreset } from '@welkin/clouds'
+import { solvedLight } from '../../../atmosphere/test/solvedLight'
 import { scalePhase } from '../../src/light/cpu/cloudPhase'
 
 const up = new Vector3(0, 1, 0)
@@ -23,7 +23,7 @@ const at = (altitude: number): Vector3 => new Vector3(0, altitude, 0)
 
 const parameters = new AtmosphereParameters()
 const atmosphere = new Atmosphere({ parameters })
-atmosphere.tables.data = solveDiffuseLight(parameters)
+atmosphere.tables.data = solvedLight()
 
 /** Illuminance of level ground by sun, sky and clouds [lx]. */
 function levelIlluminance(altitude: number, clouds: CloudCover | null = null): number {

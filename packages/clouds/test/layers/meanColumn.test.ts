@@ -32,7 +32,7 @@ class WeatherAlone extends NoiseTextures {
 }
 
 const noise = new WeatherAlone()
-const STEPS = 48
+const STEPS = 24
 
 interface Sample {
   readonly height: number
