@@ -397,7 +397,7 @@ gpuTest(
     const rough = (0.04 ** 4 + 2 * variance) ** 0.25
     t.note(`deviation of slopes ${Math.sqrt(variance).toFixed(4)}`)
     expectClose((await look())[1], rough, { relative: 0.03 }, 'roughness, rings from afar')
-    camera.position.y = 0.2
+    camera.position.y = 0.35
     const spread = await tilted()
     expectTrue(spread > 10, `rings tilt ${spread} of ${32 * 32} pixels`)
     water.snow = 40

@@ -72,8 +72,11 @@ const SNOW_ALBEDO = [0.93, 0.95, 0.96] as const
 /** Upward component of normals from which puddles stand, and snow lies. */
 const LEVEL = [0.97, 0.995] as const
 const HOLDS_SNOW = [0.45, 0.75] as const
-/** Height over which a puddle's edge is drawn, of that of hollows: wider by a pixel's. Smaller: hard edges (*Rain and snow in a street*). */
-const SHORE = 0.1
+/**
+ * Height over which puddles thin out to a film, over that of hollows: a road's texture is some 0.7 mm deep, hollows 2 mm. A pixel's height comes on top.
+ * Smaller: hard edges (*Rain and snow in a street*).
+ */
+const SHORE = 0.35
 
 /**
  * Albedo of a rough surface under a film of water: of the light that it scatters, 1 − 1/n² comes back by total reflection.
@@ -112,7 +115,7 @@ export function wetSurface(water: SurfaceWater, options: WetSurfaceOptions = {})
   const hollows = (options.hollows ?? noise.mul(0.8).add(0.5).clamp()) as Float
 
   const wet = water.wetnessNode.mul(exposure)
-  const filled = water.puddlesNode.mul(exposure).mul(1.1)
+  const filled = water.puddlesNode.mul(exposure).mul(1 + SHORE)
   const shore = hollows.add(fwidth(hollows) as unknown as Float).add(SHORE)
   const puddle = smoothstep(hollows, shore, filled).mul(smoothstep(...LEVEL, upward))
   const covered = water.snowCoverNode.mul(exposure).mul(1.1)

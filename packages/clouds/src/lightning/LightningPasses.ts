@@ -198,8 +198,8 @@ export class LightningPasses {
       const at = uv() as unknown as Vec2
       const { w: distance } = glow.sample(at).level(0).toConst() as Vec4
       const place = at.div(this.#texel).floor().toConst() as Vec2
-      const { xyz } = this.#mixed(glow, place, distance, 3)
-      return vec4(channelColor(xyz.xy.div(xyz.z.max(1e-6))), distance)
+      const mean = this.#mixed(glow, place, distance, 3)
+      return vec4(channelColor(mean.xy.div(mean.z.max(1e-6))), distance)
     })()
   }
 
@@ -211,10 +211,9 @@ export class LightningPasses {
    * @param count - Pixels that count along an edge.
    * @see Kopf et al. 2007, "Joint bilateral upsampling", eq. 3
    */
-  #mixed(glow: LevelTexture<Vec2>, place: Vec2, distance: Float, count: number): Vec4 {
+  #mixed(glow: LevelTexture<Vec2>, place: Vec2, distance: Float, count: number): Vec3 {
     const first = place.floor().sub(count - 2)
     const sum = vec4(0).toVar() as Variable<Vec4>
-    const weights = float(0).toVar() as Variable<Float>
     loop('glowPixel', count ** 2, index => {
       const row = float(index).div(count).floor().toConst() as Float
       const pixel = first.add(vec2(float(index).sub(row.mul(count)), row)).toConst() as Vec2
@@ -228,10 +227,9 @@ export class LightningPasses {
         .mul(near.y)
         .div(apart.mul(apart).add(SIMILAR ** 2))
         .toConst()
-      sum.addAssign(other.mul(weight))
-      weights.addAssign(weight)
+      sum.addAssign(vec4(other.xyz, 1).mul(weight))
     })
-    return sum.div(weights).toConst()
+    return sum.xyz.div(sum.w).toConst()
   }
 
   /** Mean of 1/(r² + s²) over the stem, for a place in clouds, in w, and of that times the direction to the stem [1/m²]. */
@@ -276,7 +274,7 @@ export class LightningPasses {
       If(opacity.greaterThan(LEAST_OPACITY), () => {
         const distance = unpack(accumulated.distances.sample(here).level(0)).x.toConst() as Float
         const place = here.mul(this.#scale).add(this.#offset).toConst() as Vec2
-        light.assign(this.#mixed(this.#glows[1], place, distance, 2).xyz.mul(opacity))
+        light.assign(this.#mixed(this.#glows[1], place, distance, 2).mul(opacity))
         end.assign(mix(end, distance.exp2().min(end), opacity))
       })
       light.addAssign(vec3(...CHANNEL_COLOR).mul(this.#hazeLight(ray.direction, end)))
