@@ -387,7 +387,7 @@ gpuTest(
     // Waves of 17 mm are lost in pixels of 58 mm: they are roughness, by the variance of slopes at random places and times.
     expectTrue((await tilted()) === 0, 'no ring is seen from afar')
     const draw = random(5)
-    const places = Array.from({ length: 8192 }, () => [...[50, 50, 90].map(to => to * draw())])
+    const places = Array.from({ length: 8192 }, () => [50, 50, 90].map(to => to * draw()))
     const slopes = await evaluateOnGpu(renderer, places, ({ xy, z }) =>
       rippleSlope(xy, z, water.ringRateNode)
     )

@@ -22,7 +22,13 @@ import {
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import { BoltPass } from './BoltPass'
-import { CHANNEL_COLOR, STEM_POINTS, type PlacedChannel, type StormColumn } from './channel'
+import {
+  CHANNEL_COLOR,
+  fromCamera,
+  STEM_POINTS,
+  type PlacedChannel,
+  type StormColumn
+} from './channel'
 import { StormDensity } from './StormDensity'
 import { channelColor } from './tsl/channelColor'
 import { meanInverseSquare } from './tsl/lineLight'
@@ -64,7 +70,6 @@ const STEEPEST = 1e6
 const limbDarkening = (facing: Float): Float => facing.clamp(0, 1).mul(0.75).add(0.5)
 
 const _offset = new Vector3()
-const _row = new Vector3()
 
 /** Scattering by molecules and aerosols at an altitude, 520 nm [1/m]. */
 function hazeAt({ atmosphere }: AtmosphereView, altitude: number): number {
@@ -121,7 +126,7 @@ export class LightningPasses {
     const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
     return Fn(() => {
       const texel = (uv() as unknown as Vec2).div(this.#texel).floor()
-      const marched = texel.mul(GLOW_PIXEL).min(marchedSize.sub(1)).toConst() as Vec2
+      const marched = texel.mul(GLOW_PIXEL).toConst() as Vec2
       const here = marched.add(0.5).div(marchedSize).toConst() as Vec2
       const at = marched.mul(block).add(jitter).add(0.5).div(size).toConst() as Vec2
       const ray = viewRayAt(viewRays, at)
@@ -295,13 +300,11 @@ export class LightningPasses {
     channel: PlacedChannel,
     power: { readonly all: number; readonly branches: number }
   ): void {
-    const { place, axes, stem } = channel
-    _offset.copy(place).sub(viewpoint)
-    stem.forEach((point, i) => {
-      _row.copy(_offset)
-      point.forEach((value, axis) => _row.addScaledVector(axes[axis], value))
-      this.#stem[i].set(_row.x, _row.y, _row.z, hazeAt(view, point[2]))
+    channel.stem.forEach((point, i) => {
+      const { x, y, z } = fromCamera(channel, viewpoint, point, _offset)
+      this.#stem[i].set(x, y, z, hazeAt(view, point[2]))
     })
+    _offset.copy(channel.place).sub(viewpoint)
     this.#density.update(_offset)
     this.power.value = power.all
     const { size, marchedSize, block, jitter } = this.#clouds.passes.viewRays.frame

@@ -1,4 +1,4 @@
-import { dFdx, dFdy, exp, float, hash, sin, smoothstep, vec2 } from 'three/tsl'
+import { exp, float, fwidth, hash, sin, smoothstep, vec2 } from 'three/tsl'
 import type { Float, Vec2 } from '../../tsl-types'
 
 /** Side of a cell in which one drop falls per period [m], and the period [s]. */
@@ -25,10 +25,12 @@ const chanceOf = (ringRate: Float): Float => ringRate.mul((CELL * CELL * PERIOD)
  * @param place - On the water [m].
  */
 export function seenRipples(place: Vec2): Float {
-  const [across, up] = [dFdx(place), dFdy(place)].map(way => (way as unknown as Vec2).toConst())
-  // A pixel of width w has w²/12 along each side.
-  const variance = across.dot(across).add(up.dot(up)).div(24)
-  return variance.mul(-0.5 * ((2 * Math.PI) / WAVELENGTH) ** 2).exp()
+  const width = (fwidth(place) as unknown as Vec2).toConst()
+  // A width w has w²/12; half of the sum along both axes is the mean over directions.
+  return width
+    .dot(width)
+    .mul(-(((2 * Math.PI) / WAVELENGTH) ** 2) / 48)
+    .exp()
 }
 
 /** Variance of the ripples' slope along each axis [–]. @param ringRate - As for {@link rippleSlope}. */
