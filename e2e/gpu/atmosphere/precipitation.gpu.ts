@@ -30,6 +30,7 @@ import { float, vec3, vec4 } from 'three/tsl'
 import { MeshBasicNodeMaterial, MeshStandardNodeMaterial, RenderPipeline } from 'three/webgpu'
 import { LampUniforms } from '../../../packages/atmosphere/src/precipitation/LampUniforms'
 import { rain, snow } from '../../../packages/atmosphere/src/precipitation/ParticleKind'
+import { rippleSlope } from '../../../packages/atmosphere/src/precipitation/tsl/rippleSlope'
 import {
   drawnDepth,
   flakeWidth
@@ -378,10 +379,26 @@ gpuTest(
     water.water = 2.5
     await expectLook(wet, 0.04, 'puddle')
     const still = await values(nodes.normalNode)
-    water.update(0, { rain: 25 })
-    const rippled = await values(nodes.normalNode)
     expectClose(mean(still, 2), 1, { absolute: 1e-3 }, 'a still puddle is level')
-    const spread = rippled.data.filter((x, i) => i % 4 === 0 && Math.abs(x) > 0.01).length
+    water.update(0, { rain: 25 })
+    const tilted = async (): Promise<number> =>
+      (await values(nodes.normalNode)).data.filter((x, i) => i % 4 === 0 && Math.abs(x) > 0.01)
+        .length
+    // Waves of 17 mm are lost in pixels of 58 mm: they are roughness, by the variance of slopes at random places and times.
+    expectTrue((await tilted()) === 0, 'no ring is seen from afar')
+    const draw = random(5)
+    const places = Array.from({ length: 8192 }, () => [50, 50, 90].map(to => to * draw()))
+    const slopes = await evaluateOnGpu(renderer, places, ({ xy, z }) =>
+      rippleSlope(xy, z, water.ringRateNode)
+    )
+    const variance =
+      places.reduce((sum, _, i) => sum + slopes[4 * i] ** 2 + slopes[4 * i + 1] ** 2, 0) /
+      (2 * places.length)
+    const rough = (0.04 ** 4 + 2 * variance) ** 0.25
+    t.note(`deviation of slopes ${Math.sqrt(variance).toFixed(4)}`)
+    expectClose((await look())[1], rough, { relative: 0.03 }, 'roughness, rings from afar')
+    camera.position.y = 0.35
+    const spread = await tilted()
     expectTrue(spread > 10, `rings tilt ${spread} of ${32 * 32} pixels`)
     water.snow = 40
     await expectLook(0.93, 0.9, 'snow')

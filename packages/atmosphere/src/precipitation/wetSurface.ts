@@ -1,6 +1,7 @@
 import {
   cameraViewMatrix,
   float,
+  fwidth,
   materialColor,
   materialRoughness,
   mix,
@@ -17,7 +18,7 @@ import type { Node } from 'three/webgpu'
 import { checkOptions, fail } from '@welkin/geo'
 import type { Float, Mat4, Vec3 } from '../tsl-types'
 import { SurfaceWater } from './SurfaceWater'
-import { rippleSlope } from './tsl/rippleSlope'
+import { rippleSlope, rippleVariance, seenRipples } from './tsl/rippleSlope'
 
 /** Options of {@link wetSurface}: nodes; each has a default. */
 export interface WetSurfaceOptions {
@@ -71,6 +72,11 @@ const SNOW_ALBEDO = [0.93, 0.95, 0.96] as const
 /** Upward component of normals from which puddles stand, and snow lies. */
 const LEVEL = [0.97, 0.995] as const
 const HOLDS_SNOW = [0.45, 0.75] as const
+/**
+ * Height over which puddles thin out to a film, over that of hollows: a road's texture is some 0.7 mm deep, hollows 2 mm. A pixel's height comes on top.
+ * Smaller: hard edges (*Rain and snow in a street*).
+ */
+const SHORE = 0.35
 
 /**
  * Albedo of a rough surface under a film of water: of the light that it scatters, 1 − 1/n² comes back by total reflection.
@@ -109,8 +115,9 @@ export function wetSurface(water: SurfaceWater, options: WetSurfaceOptions = {})
   const hollows = (options.hollows ?? noise.mul(0.8).add(0.5).clamp()) as Float
 
   const wet = water.wetnessNode.mul(exposure)
-  const filled = water.puddlesNode.mul(exposure).mul(1.1)
-  const puddle = smoothstep(hollows, hollows.add(0.1), filled).mul(smoothstep(...LEVEL, upward))
+  const filled = water.puddlesNode.mul(exposure).mul(1 + SHORE)
+  const shore = hollows.add(fwidth(hollows) as unknown as Float).add(SHORE)
+  const puddle = smoothstep(hollows, shore, filled).mul(smoothstep(...LEVEL, upward))
   const covered = water.snowCoverNode.mul(exposure).mul(1.1)
   const snow = smoothstep(hollows.sub(0.1), hollows.add(0.1), covered.sub(0.1))
     .mul(smoothstep(...HOLDS_SNOW, upward))
@@ -119,9 +126,16 @@ export function wetSurface(water: SurfaceWater, options: WetSurfaceOptions = {})
   const darkened = mix(dry, wetAlbedo(dry), wet.max(puddle).mul(options.porosity ?? float(1)))
   // Pores fill first, and only then a film smooths.
   const film = mix(dryRoughness, dryRoughness.min(FILM_ROUGHNESS), wet.mul(wet))
-  const smooth = mix(film, float(PUDDLE_ROUGHNESS), puddle)
   const time = (options.time ?? clock) as Float
-  const slope = rippleSlope(position.xz, time, water.ringRateNode)
+  const seen = seenRipples(position.xz).toConst() as Float
+  // Ripples too small to be seen make water rough: α² grows by twice the variance of their slope (Beckmann & Spizzichino 1963).
+  const unseen = rippleVariance(water.ringRateNode).mul(seen.mul(seen).oneMinus().mul(2))
+  const rough = unseen
+    .add(PUDDLE_ROUGHNESS ** 4)
+    .sqrt()
+    .sqrt()
+  const smooth = mix(film, rough, puddle)
+  const slope = rippleSlope(position.xz, time, water.ringRateNode).mul(seen)
   const surface = vec4(slope.x.negate(), 1, slope.y.negate(), 0)
   const rippled = (cameraViewMatrix as unknown as Mat4).mul(surface).xyz as Vec3
   const bare = puddle.mul(snow.oneMinus())

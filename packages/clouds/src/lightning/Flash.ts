@@ -1,5 +1,5 @@
 import { Vector3 } from 'three'
-import type { PlacedChannel } from './channel'
+import { fromCamera, type PlacedChannel } from './channel'
 import type { FlashCurve, FlashKind } from './flashCurve'
 import type { LightningEvent } from './LightningOptions'
 
@@ -17,17 +17,15 @@ export interface Flash extends PlacedChannel {
 }
 
 /** Thunder of a flash. */
-export function eventOf({ kind, pieces, place, axes }: Flash, viewpoint: Vector3): LightningEvent {
+export function eventOf(flash: Flash, viewpoint: Vector3): LightningEvent {
   let [nearest, farthest] = [Infinity, 0]
-  for (const { from } of pieces) {
-    _point.copy(place).sub(viewpoint)
-    from.forEach((value, axis) => _point.addScaledVector(axes[axis], value))
-    const distance = _point.length()
+  for (const { from } of flash.pieces) {
+    const distance = fromCamera(flash, viewpoint, from, _point).length()
     nearest = Math.min(nearest, distance)
     farthest = Math.max(farthest, distance)
   }
   return {
-    kind,
+    kind: flash.kind,
     distance: nearest,
     delay: nearest / SPEED_OF_SOUND,
     duration: (farthest - nearest) / SPEED_OF_SOUND

@@ -7,7 +7,7 @@ import { checkClouds } from '../check'
 import { viewpointMapped } from '../density/CloudField'
 import type { CloudsNode } from '../march/CloudsNode'
 import type { Float, Vec3 } from '../tsl-types'
-import { CHANNEL_COLOR, lightningChannel } from './channel'
+import { CHANNEL_COLOR, fromCamera, lightningChannel } from './channel'
 import { flashCurve, lightBetween } from './flashCurve'
 import { seeded, type Random } from './random'
 import { FlashLimit } from './FlashLimit'
@@ -325,11 +325,9 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
 
   /** Places the light: at the channel's lower half where it is seen, else at the cloud's base, out of which its light comes. */
   #light({ viewToMapped, camera }: AtmosphereView, flash: Flash, power: number): void {
-    const { place, axes, stem, kind } = flash
+    const { stem, kind } = flash
     const low = kind === 'ground' ? stem[stem.length - 2] : stem[0]
-    _point.copy(place).sub(_viewpoint)
-    low.forEach((value, axis) => _point.addScaledVector(axes[axis], value))
-    _point.applyMatrix3(_toView.copy(viewToMapped).invert())
+    fromCamera(flash, _viewpoint, low, _point).applyMatrix3(_toView.copy(viewToMapped).invert())
     this.light.position.copy(_point).applyMatrix4(camera.matrixWorld)
     // World units may not be metres.
     const metres = Math.cbrt(Math.abs(viewToMapped.determinant()))

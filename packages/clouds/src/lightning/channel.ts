@@ -40,6 +40,18 @@ export interface StormColumn {
   readonly top: number
 }
 
+/** Displacement of a channel's point from the camera, in the mapped space [m]. */
+export function fromCamera(
+  { place, axes }: Pick<PlacedChannel, 'place' | 'axes'>,
+  viewpoint: Vector3,
+  point: Point,
+  target: Vector3
+): Vector3 {
+  target.copy(place).sub(viewpoint)
+  point.forEach((value, axis) => target.addScaledVector(axes[axis], value))
+  return target
+}
+
 /** Points of {@link Channel.stem}. */
 export const STEM_POINTS = 5
 

@@ -1,4 +1,4 @@
-import { exp, float, hash, sin, smoothstep, vec2 } from 'three/tsl'
+import { exp, float, fwidth, hash, sin, smoothstep, vec2 } from 'three/tsl'
 import type { Float, Vec2 } from '../../tsl-types'
 
 /** Side of a cell in which one drop falls per period [m], and the period [s]. */
@@ -12,6 +12,32 @@ const SPEED = 0.23
 const WAVELENGTH = 0.017
 /** Slope of the waves of a new ring [–]. */
 const STEEPNESS = 0.35
+/** Mean square of a ring's waves over its cell and period, over that of `STEEPNESS`: integrated numerically. */
+const MEAN_SQUARE = 0.0072
+
+/** Chance that a cell has a ring, without its bound of 1. */
+const chanceOf = (ringRate: Float): Float => ringRate.mul((CELL * CELL * PERIOD) / LAYERS)
+
+/**
+ * Part of the ripples' slope that is left in the mean over a pixel, in [0, 1]: a wave of k radians a metre keeps exp(−k²σ²/2), σ² the variance
+ * of places in the pixel along it, in the mean over directions. To be called out of branches.
+ *
+ * @param place - On the water [m].
+ */
+export function seenRipples(place: Vec2): Float {
+  const width = (fwidth(place) as unknown as Vec2).toConst()
+  // A width w has w²/12; half of the sum along both axes is the mean over directions.
+  return width
+    .dot(width)
+    .mul(-(((2 * Math.PI) / WAVELENGTH) ** 2) / 48)
+    .exp()
+}
+
+/** Variance of the ripples' slope along each axis [–]. @param ringRate - As for {@link rippleSlope}. */
+export const rippleVariance = (ringRate: Float): Float =>
+  chanceOf(ringRate)
+    .min(1)
+    .mul((LAYERS * STEEPNESS ** 2 * MEAN_SQUARE) / 2)
 
 /**
  * Slope of ring waves that drops leave on water, along two axes [–].
@@ -23,7 +49,7 @@ const STEEPNESS = 0.35
  * @param ringRate - Drops that make rings [1/(m² s)]; more than 86 look like 86.
  */
 export function rippleSlope(place: Vec2, time: Float, ringRate: Float): Vec2 {
-  const chance = ringRate.mul((CELL * CELL * PERIOD) / LAYERS).toConst()
+  const chance = chanceOf(ringRate).toConst()
   let slope: Vec2 = vec2(0)
   for (let layer = 0; layer < LAYERS; layer++) {
     const shifted = place.div(CELL).add(vec2(0.37 * layer, 0.61 * layer))
