@@ -5,7 +5,7 @@ declare global {
 
 /**
  * Texels along an edge of a cascade: as users have it, in pictures of stories and where shadows so coarse pass for those, where
- * shadows are not measured, and where, besides, no materials read shafts: shadows of clouds leave no room for these then.
+ * shadows are not measured, and where it is enough that there are some: materials' light shafts have as little room then.
  */
 const sizes = { fine: 256, half: 128, coarse: 64, least: 32 }
 
