@@ -245,6 +245,7 @@ async function move(context: BrowserContext, origin: string): Promise<void> {
   const rest = await atRest(page)
   const link = await addressAfter(page, start)
   report.check(link.includes('#view='), 'the address has the view', link)
+  await page.evaluate(() => window.welkinMoving.keepTables())
   await page.close()
 
   const again = await open(context, link)

@@ -60,8 +60,7 @@ gpuTest(
     }
     field.dispose()
   },
-  // WebGL has what the first test with clouds has baked there.
-  { bakes: ['webgpu'] }
+  { bakes: true }
 )
 
 for (const [where, place] of places) {

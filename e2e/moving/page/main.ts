@@ -16,6 +16,8 @@ interface Story {
 export interface MovingPage {
   /** Shows a story; settles when it runs. */
   show: (file: string, story: string) => Promise<void>
+  /** Keeps the tables of the story's air for pages that are opened next. */
+  keepTables: () => Promise<void>
   /** Position and direction of the camera. */
   look: () => ExplorerState
   /** Speed of the camera, over some frames [m/s]. */
@@ -45,7 +47,6 @@ const show: MovingPage['show'] = async (file, story) => {
   while (document.body.dataset.ready === undefined) {
     await new Promise(resolve => setTimeout(resolve, 20))
   }
-  await keepTables()
 }
 
 const look = (): ExplorerState => window.welkinScene!.explorer!.state
@@ -82,4 +83,4 @@ const flyTo: MovingPage['flyTo'] = async ([x, y, z], seconds) => {
   return views
 }
 
-window.welkinMoving = { show, look, speed, flyTo }
+window.welkinMoving = { show, keepTables, look, speed, flyTo }
