@@ -33,7 +33,7 @@ export function watchProcessorTime(root) {
   const seconds = new Map()
   const look = () => {
     const all = listProcesses()
-    // Parents have lower ids than their children but for where ids start over: as often as something is found.
+    // Repeats until nothing new is found: an id may be lower than its parent's.
     for (let size = 0; size !== members.size;) {
       size = members.size
       for (const [id, { parent }] of all) if (members.has(parent)) members.add(id)

@@ -41,9 +41,10 @@ const situations = [
   { name: 'by day in orbit', sun: 35, moon: 20, altitude: 400_000 }
 ] as const
 
-/** Situations on WebGL: by day, in an eclipse, and in orbit. Others have the same shaders. */
+/** Situations on WebGL: by day, in a flash at night, in an eclipse, and in orbit. */
 const onWebGL: ReadonlySet<string> = new Set([
   'by day on the ground',
+  'at night on the ground',
   'in an eclipse on the ground',
   'by day in orbit'
 ])

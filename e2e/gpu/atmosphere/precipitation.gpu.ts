@@ -26,7 +26,7 @@ import {
   SpotLight,
   Vector3
 } from 'three'
-import { float, vec3, vec4 } from 'three/tsl'
+import { float, positionWorld, sin, vec3, vec4 } from 'three/tsl'
 import { MeshBasicNodeMaterial, MeshStandardNodeMaterial, RenderPipeline } from 'three/webgpu'
 import { LampUniforms } from '../../../packages/atmosphere/src/precipitation/LampUniforms'
 import { rain, snow } from '../../../packages/atmosphere/src/precipitation/ParticleKind'
@@ -378,6 +378,16 @@ gpuTest(
     await expectLook(wet, 0.15, 'wet')
     water.water = 2.5
     await expectLook(wet, 0.04, 'puddle')
+    // Hollows as small as pixels: full ones are under water, dry ones are not.
+    const uneven = wetSurface(water, {
+      ...options,
+      hollows: sin(positionWorld.x.mul(40)).mul(0.5).add(0.5)
+    })
+    const roughness = async (): Promise<number> => mean(await values(vec3(uneven.roughnessNode)), 0)
+    expectClose(await roughness(), 0.04, { absolute: 1e-3 }, 'full hollows')
+    water.water = 0
+    expectClose(await roughness(), 0.9, { absolute: 1e-3 }, 'dry hollows')
+    water.water = 2.5
     const still = await values(nodes.normalNode)
     expectClose(mean(still, 2), 1, { absolute: 1e-3 }, 'a still puddle is level')
     water.update(0, { rain: 25 })

@@ -18,7 +18,7 @@ import { coarse, drawUnseen } from './cloud-view'
 import { nextFrame } from './graphics'
 import { parameters, type Stage } from './shaft-stage'
 
-/** Size of pictures of which {@link measuredLoss} reads the middle alone, where clouds have no noise, which such wide pixels would blur. */
+/** Size of pictures of which {@link measuredLoss} reads the middle alone. For clouds without noise: wide pixels blur it. */
 export const raySize = { width: 16, height: 9 }
 
 export const radians = (degrees: number): number => (degrees * Math.PI) / 180

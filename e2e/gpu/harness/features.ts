@@ -24,7 +24,7 @@ import {
 import type { Moon, SkyLayer, SurfaceLightingNode } from '@welkin/atmosphere'
 import { CloudLayers, clouds, lightning } from '@welkin/clouds'
 import type { CloudQuality } from '@welkin/clouds'
-import { latticeNoise, latticeNoiseOnCPU, Terrain, type HeightSource } from '@welkin/terrain'
+import { Terrain } from '@welkin/terrain'
 import {
   BoxGeometry,
   FloatType,
@@ -40,7 +40,6 @@ import type { Light } from 'three'
 import { ao } from 'three/addons/tsl/display/GTAONode.js'
 import {
   builtinAOContext,
-  float,
   mix,
   mrt,
   normalView,
@@ -61,6 +60,7 @@ import {
 import { drawToFloat } from './atmosphere'
 import { coarse, fog, SparseNoise } from './cloud-view'
 import { nextFrame } from './graphics'
+import { hills } from './ground'
 import type { Picture } from './picture'
 import { featureNames, hours, type FeatureName, type Hour } from './predict'
 
@@ -71,31 +71,8 @@ const PLACE = [8, 46] as const
 /** Time over which light of a flash is gathered [s]. */
 const EXPOSURE = 0.5
 
-/** Hills of a terrain: their wavelength [m], and half of the height between valleys and summits [m]. */
-const HILLS = 8192
-const HEIGHT = 400
-
-/** Hills that pass below the origin by 10 m, at a place where they have a height of `offset` [m]. */
-function hills(offset: number): HeightSource {
-  const noise = { x: 0, y: 0, z: 0, value: 0 }
-  return {
-    lowest: -2 * HEIGHT - 10,
-    highest: 2 * HEIGHT,
-    variation: distance => (3 * HEIGHT * distance) / HILLS,
-    sampleAt({ x, y, z }, target) {
-      latticeNoiseOnCPU(x, y, z, 1 / HILLS, 0, noise)
-      target.height = HEIGHT * noise.value - offset - 10
-      target.gradient.set(noise.x, noise.y, noise.z).multiplyScalar(HEIGHT / HILLS)
-      return target
-    },
-    sample({ reference, offset: from }, shortest) {
-      const { xyz, w } = latticeNoise(reference, from, float(1 / HILLS), float(0))
-      const kept = float(HILLS).div(shortest).sub(1).clamp(0, 1)
-      const level = vec4(0, 0, 0, offset + 10)
-      return vec4(xyz.div(HILLS), w).mul(kept.mul(HEIGHT)).sub(level)
-    }
-  }
-}
+/** Hills of a terrain: their wavelength, and half of the height between valleys and summits [m]. */
+const HILLS = [8192, 400] as const
 
 /** Options of a texture whose pixels are read as they are: bilinear look-ups of software mix in 1/256 of a bright neighbour. */
 const exactly = { type: FloatType, minFilter: NearestFilter, magFilter: NearestFilter }
@@ -235,9 +212,9 @@ export class FeatureStage {
 
   #addTerrain(): Terrain {
     const [longitude, latitude] = PLACE
-    const height = new Terrain(this.atmosphere, hills(0)).heightAt(longitude, latitude) + 10
+    const height = new Terrain(this.atmosphere, hills(...HILLS)).heightAt(longitude, latitude)
     const options = { pageMemory: 20, seaLevel: -Infinity }
-    const terrain = new Terrain(this.atmosphere, hills(height), options)
+    const terrain = new Terrain(this.atmosphere, hills(...HILLS, height + 10), options)
     this.#scene.add(terrain)
     this.#owned.push(terrain)
     return terrain

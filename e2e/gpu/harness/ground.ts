@@ -16,28 +16,32 @@ export const levelGround: HeightSource = {
   sample: () => vec4(0)
 }
 
-const noise = { x: 0, y: 0, z: 0, value: 0 }
-const inverse = 1 / 512
-const amplitude = 60
-
-/** Hills 500 m apart: a software renderer draws their pages in a fraction of the time that mountains take. */
-export const hills: HeightSource = {
-  lowest: -1.5 * amplitude,
-  highest: 1.5 * amplitude,
-  variation: distance => 4 * amplitude * inverse * distance,
-  sampleAt({ x, y, z }, target) {
-    latticeNoiseOnCPU(x, y, z, inverse, 0, noise)
-    target.height = amplitude * noise.value
-    target.gradient.set(noise.x, noise.y, noise.z).multiplyScalar(amplitude * inverse)
-    return target
-  },
-  sample({ reference, offset }, shortest) {
-    const { xyz, w } = latticeNoise(reference, offset, float(inverse), float(0))
-    const kept = float(1 / inverse)
-      .div(shortest)
-      .sub(1)
-      .clamp(0, 1)
-    return vec4(xyz.mul(inverse), w).mul(kept.mul(amplitude))
+/**
+ * Hills of one octave of noise: a software renderer draws their pages in a fraction of the time that mountains take.
+ *
+ * @param wavelength - Of the noise [m].
+ * @param height - Half of the height between valleys and summits [m].
+ * @param depth - Depth of their mean below the planet's surface [m].
+ */
+export function hills(wavelength: number, height: number, depth = 0): HeightSource {
+  const noise = { x: 0, y: 0, z: 0, value: 0 }
+  return {
+    lowest: -2 * height - Math.max(depth, 0),
+    highest: 2 * height - Math.min(depth, 0),
+    variation: distance => (4 * height * distance) / wavelength,
+    sampleAt({ x, y, z }, target) {
+      latticeNoiseOnCPU(x, y, z, 1 / wavelength, 0, noise)
+      target.height = height * noise.value - depth
+      target.gradient.set(noise.x, noise.y, noise.z).multiplyScalar(height / wavelength)
+      return target
+    },
+    sample({ reference, offset }, shortest) {
+      const { xyz, w } = latticeNoise(reference, offset, float(1 / wavelength), float(0))
+      const kept = float(wavelength).div(shortest).sub(1).clamp(0, 1)
+      return vec4(xyz.div(wavelength), w)
+        .mul(kept.mul(height))
+        .sub(vec4(0, 0, 0, depth))
+    }
   }
 }
 

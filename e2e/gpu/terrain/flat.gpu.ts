@@ -11,7 +11,7 @@ gpuTest('the ground of a flat world is drawn where the CPU finds it, without hol
   const renderer = await t.createPlanetRenderer(SIZE)
   const atmosphere = new Atmosphere({ flat: true })
   const options = { resolution: 16, seaLevel: -Infinity, pageMemory: 20 }
-  const terrain = new Terrain(atmosphere, hills, options)
+  const terrain = new Terrain(atmosphere, hills(512, 60), options)
   terrain.material.fragmentNode = vec4(positionView, 1)
   const scene = new Scene()
   scene.background = new Color(0, 0, 0)

@@ -73,7 +73,7 @@ const SNOW_ALBEDO = [0.93, 0.95, 0.96] as const
 const LEVEL = [0.97, 0.995] as const
 const HOLDS_SNOW = [0.45, 0.75] as const
 /**
- * Height over which puddles thin out to a film, over that of hollows: a road's texture is some 0.7 mm deep, hollows 2 mm. A pixel's height comes on top.
+ * Height over which puddles thin out to a film, over that of hollows: a road's texture is some 0.7 mm deep, hollows 2 mm. A pixel's height comes on top, half on each side.
  * Smaller: hard edges (*Rain and snow in a street*).
  */
 const SHORE = 0.35
@@ -116,8 +116,14 @@ export function wetSurface(water: SurfaceWater, options: WetSurfaceOptions = {})
 
   const wet = water.wetnessNode.mul(exposure)
   const filled = water.puddlesNode.mul(exposure).mul(1 + SHORE)
-  const shore = hollows.add(fwidth(hollows) as unknown as Float).add(SHORE)
-  const puddle = smoothstep(hollows, shore, filled).mul(smoothstep(...LEVEL, upward))
+  const half = (fwidth(hollows) as unknown as Float).mul(0.5).toConst()
+  const deep = hollows
+    .add(half)
+    .add(SHORE)
+    .min(1 + SHORE)
+  const puddle = smoothstep(hollows.sub(half).max(0), deep, filled).mul(
+    smoothstep(...LEVEL, upward)
+  )
   const covered = water.snowCoverNode.mul(exposure).mul(1.1)
   const snow = smoothstep(hollows.sub(0.1), hollows.add(0.1), covered.sub(0.1))
     .mul(smoothstep(...HOLDS_SNOW, upward))

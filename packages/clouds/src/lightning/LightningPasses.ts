@@ -9,7 +9,7 @@ import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/ts
 import type { Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
 import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
-import { encodeDistance, unpack } from '../temporal/tsl/packing'
+import { encodeDistance, FARTHEST, unpack } from '../temporal/tsl/packing'
 import {
   loop,
   vec4Array,
@@ -128,12 +128,13 @@ export class LightningPasses {
       const texel = (uv() as unknown as Vec2).div(this.#texel).floor()
       const marched = texel.mul(GLOW_PIXEL).toConst() as Vec2
       const here = marched.add(0.5).div(marchedSize).toConst() as Vec2
-      const at = marched.mul(block).add(jitter).add(0.5).div(size).toConst() as Vec2
+      const pixel = marched.mul(block).add(jitter).min(size.sub(1))
+      const at = pixel.add(0.5).div(size).toConst() as Vec2
       const ray = viewRayAt(viewRays, at)
       const distances = seen.distances.sample(here).level(0).toConst()
       const shares = seen.shares.sample(here).level(0).toConst()
       const opacity = shares.dot(vec4(1)).toConst() as Float
-      const light = vec4(0).toVar() as Variable<Vec4>
+      const light = vec4(0, 0, 0, FARTHEST).toVar() as Variable<Vec4>
       If(opacity.greaterThan(LEAST_OPACITY), () => {
         const mean = shares.dot(distances).div(opacity).toConst() as Float
         // How deep one looks into clouds: what is finer has no face.

@@ -14,8 +14,9 @@ import {
 } from './diffuseLight'
 import { densities, extinction, homogeneousHeight } from '../../air/cpu/medium'
 import { asymmetryMoments, cornetteShanksPhase, rayleighPhase } from '../../air/cpu/phase'
+import { interpolate } from '../../math/cpu/interpolate'
 import { gaussLegendre } from '../../math/cpu/quadrature'
-import { interpolate, Sunlight } from './Sunlight'
+import { Sunlight } from './Sunlight'
 
 const [COLUMNS, ROWS] = DIFFUSE_SIZE
 const PER_CELL = 4 * DIFFUSE_TILES
