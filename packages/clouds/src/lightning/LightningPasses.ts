@@ -8,8 +8,10 @@ import { Vector3, Vector4 } from 'three'
 import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
+import { marchedPixel } from '../march/tsl/marchedPixel'
+import { CORNERS } from '../temporal/tsl/cells'
+import { encodeDistance, FARTHEST } from '../temporal/tsl/packing'
 import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
-import { encodeDistance, FARTHEST, unpack } from '../temporal/tsl/packing'
 import {
   loop,
   vec4Array,
@@ -45,9 +47,8 @@ const LONGEST_HAZE = 60_000
 
 /** Edge of a pixel of the glow, in marched ones. Greater: no relief in lit clouds (*Storm at night*). */
 const GLOW_PIXEL = 2
-/** Difference of distances at which a pixel of the glow counts half [octaves]. Greater: clouds shine at those before and behind them. */
-const SIMILAR = 0.02
-/** Opacity of a pixel's clouds below which their light is not seen [–]. */
+
+/** Opacity of clouds below which their light is not seen [–]. */
 const LEAST_OPACITY = 1e-3
 
 /** Opacity of a ray's clouds above which they have a face [–]. */
@@ -86,29 +87,28 @@ export class LightningPasses {
   /** Luminous power, times `luminanceScale` [lm]. */
   readonly power = number()
   readonly #clouds: CloudsNode
-  /** Scale and offset from places in the picture to pixels of the glow: quotients of uniforms cost each pixel a division. */
+  /** Scale and offset from places in the picture to those among marched pixels: quotients of uniforms cost each pixel a division. */
   readonly #scale = vector2()
   readonly #offset = vector2()
-  /** Reciprocal of the glow's size [1/pixels]. */
-  readonly #texel = vector2()
   /** Points of the stem from the camera, in the mapped space [m], and scattering by air there [1/m]. */
   readonly #stem: readonly Vector4[] = Array.from({ length: STEM_POINTS }, () => new Vector4())
   readonly #stemArray = vec4Array(this.#stem as Vector4[])
-  /** The glow as it is found, and smoothed. */
-  readonly #targets = [0, 1].map(() => tableTarget('Welkin.LightningGlow', 1, 1))
-  readonly #glows = this.#targets.map(
-    target => texture(target.texture) as unknown as LevelTexture<Vec2>
-  )
-  readonly #passes: readonly FragmentPass[]
+  readonly #target = tableTarget('Welkin.LightningGlow', 1, 1)
+  readonly #glow: LevelTexture<Vec2>
+  readonly #pass: FragmentPass
+  readonly #smoothTarget = tableTarget('Welkin.LightningSmoothGlow', 1, 1)
+  readonly #smooth: LevelTexture<Vec2>
+  readonly #smoothPass: FragmentPass
   readonly #bolt: BoltPass
   readonly #density: StormDensity
 
   constructor(clouds: CloudsNode) {
     this.#clouds = clouds
+    this.#glow = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
     this.#density = new StormDensity(clouds.field)
-    this.#passes = [this.#light(), this.#smoothed()].map(
-      light => new FragmentPass('Welkin.LightningGlow', light)
-    )
+    this.#pass = new FragmentPass('Welkin.LightningGlow', this.#light())
+    this.#smooth = texture(this.#smoothTarget.texture) as unknown as LevelTexture<Vec2>
+    this.#smoothPass = new FragmentPass('Welkin.LightningSmoothGlow', this.#smoothed())
     this.#bolt = new BoltPass(clouds)
   }
 
@@ -118,23 +118,22 @@ export class LightningPasses {
     this.#density.bake(renderer, _offset.copy(channel.place).sub(viewpoint), channel, storm)
   }
 
-  /** Light of clouds on some of the marched pixels, red and blue, times their opacity, for `STORED_POWER`; that opacity; log₂ of their distance. */
+  /**
+   * Clouds of one pixel of each block: their light, red and blue, for `STORED_POWER`, times their opacity; that opacity; and
+   * log₂ of their distance, times it.
+   */
   #light(): Vec4 {
     const { passes, field } = this.#clouds
     const { seen, viewRays } = passes
-    const { marchedSize, block, jitter, size } = viewRays.frame
     const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
     return Fn(() => {
-      const texel = (uv() as unknown as Vec2).div(this.#texel).floor()
-      const marched = texel.mul(GLOW_PIXEL).toConst() as Vec2
-      const here = marched.add(0.5).div(marchedSize).toConst() as Vec2
-      const pixel = marched.mul(block).add(jitter).min(size.sub(1))
-      const at = pixel.add(0.5).div(size).toConst() as Vec2
+      const { block, at } = marchedPixel(viewRays)
+      const here = block.add(0.5).div(viewRays.frame.marchedSize).toConst() as Vec2
       const ray = viewRayAt(viewRays, at)
       const distances = seen.distances.sample(here).level(0).toConst()
       const shares = seen.shares.sample(here).level(0).toConst()
       const opacity = shares.dot(vec4(1)).toConst() as Float
-      const light = vec4(0, 0, 0, FARTHEST).toVar() as Variable<Vec4>
+      const light = vec4(0).toVar() as Variable<Vec4>
       If(opacity.greaterThan(LEAST_OPACITY), () => {
         const mean = shares.dot(distances).div(opacity).toConst() as Float
         // How deep one looks into clouds: what is finer has no face.
@@ -154,7 +153,8 @@ export class LightningPasses {
         const displacement = ray.directionView.mul(mean).toConst()
         const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
         const radiance = lit.mul(opacity).mul(STORED_POWER / (4 * Math.PI ** 2))
-        light.assign(vec4(transmittance.xz.mul(radiance), opacity, encodeDistance(mean)))
+        const distance = encodeDistance(mean).mul(opacity)
+        light.assign(vec4(transmittance.xz.mul(radiance), opacity, distance))
       })
       return light
     })()
@@ -197,45 +197,22 @@ export class LightningPasses {
     return { normal: normal.normalize().toConst(), width }
   }
 
-  /** Colour of opaque clouds, mixed with those around: marched pixels are one of each block, and it hides which. And log₂ of their distance. */
+  /** Glow by a tent: marched pixels are one of each block, and it hides which. Light of opaque clouds as a colour, and log₂ of their distance. */
   #smoothed(): Vec4 {
     return Fn(() => {
-      const [glow] = this.#glows
-      const at = uv() as unknown as Vec2
-      const { w: distance } = glow.sample(at).level(0).toConst() as Vec4
-      const place = at.div(this.#texel).floor().toConst() as Vec2
-      const mean = this.#mixed(glow, place, distance, 3)
-      return vec4(channelColor(mean.xy.div(mean.z.max(1e-6))), distance)
+      const here = uv() as unknown as Vec2
+      const texel = vec2(GLOW_PIXEL)
+        .div(this.#clouds.passes.viewRays.frame.marchedSize)
+        .toConst() as Vec2
+      const glow = vec4(0).toVar() as Variable<Vec4>
+      for (const [x, y] of CORNERS) {
+        const place = here.add(texel.mul(vec2(x - 0.5, y - 0.5)))
+        glow.addAssign(this.#glow.sample(place).level(0))
+      }
+      const opacity = glow.z.max(LEAST_OPACITY).toConst() as Float
+      const none = LEAST_OPACITY * FARTHEST
+      return vec4(channelColor(glow.xy.div(opacity)), glow.w.add(none).div(opacity))
     })()
-  }
-
-  /**
-   * Mean of pixels of the glow about a place by a tent, and by how near the distances of their clouds are to another: a joint bilateral look-up.
-   *
-   * @param place - In pixels of the glow, whole in the middle of one.
-   * @param distance - log₂ of the distance.
-   * @param count - Pixels that count along an edge.
-   * @see Kopf et al. 2007, "Joint bilateral upsampling", eq. 3
-   */
-  #mixed(glow: LevelTexture<Vec2>, place: Vec2, distance: Float, count: number): Vec3 {
-    const first = place.floor().sub(count - 2)
-    const sum = vec4(0).toVar() as Variable<Vec4>
-    loop('glowPixel', count ** 2, index => {
-      const row = float(index).div(count).floor().toConst() as Float
-      const pixel = first.add(vec2(float(index).sub(row.mul(count)), row)).toConst() as Vec2
-      const other = glow.sample(pixel.add(0.5).mul(this.#texel)).level(0).toConst() as Vec4
-      const near = place
-        .sub(pixel)
-        .abs()
-        .sub(count - 1) as Vec2
-      const apart = other.w.sub(distance).toConst() as Float
-      const weight = near.x
-        .mul(near.y)
-        .div(apart.mul(apart).add(SIMILAR ** 2))
-        .toConst()
-      sum.addAssign(vec4(other.xyz, 1).mul(weight))
-    })
-    return sum.xyz.div(sum.w).toConst()
   }
 
   /** Mean of 1/(r² + s²) over the stem, for a place in clouds, in w, and of that times the direction to the stem [1/m²]. */
@@ -270,20 +247,17 @@ export class LightningPasses {
    */
   addTo(color: Vec3, transmittance: Float): Vec3 {
     const here = uv() as unknown as Vec2
-    const { viewRays, accumulated } = this.#clouds.passes
     const result = color.toVar() as Variable<Vec3>
     If(this.power.greaterThan(0), () => {
-      const ray = viewRayAt(viewRays, here)
-      const end = viewRayEnd(viewRays, here, ray).min(LONGEST_HAZE).toVar() as Variable<Float>
-      const light = vec3(0).toVar() as Variable<Vec3>
+      const { viewRays } = this.#clouds.passes
+      const marched = here.mul(this.#scale).add(this.#offset)
+      const glow = this.#smooth.sample(marched).level(0).toConst() as Vec4
       const opacity = transmittance.oneMinus().toConst() as Float
-      If(opacity.greaterThan(LEAST_OPACITY), () => {
-        const distance = unpack(accumulated.distances.sample(here).level(0)).x.toConst() as Float
-        const place = here.mul(this.#scale).add(this.#offset).toConst() as Vec2
-        light.assign(this.#mixed(this.#glows[1], place, distance, 2).mul(opacity))
-        end.assign(mix(end, distance.exp2().min(end), opacity))
-      })
-      light.addAssign(vec3(...CHANNEL_COLOR).mul(this.#hazeLight(ray.direction, end)))
+      // The air's light ends where the pixel does: glow of neighbours would shine over ridges and the horizon.
+      const ray = viewRayAt(viewRays, here)
+      const end = viewRayEnd(viewRays, here, ray).min(LONGEST_HAZE).toConst() as Float
+      const air = this.#hazeLight(ray.direction, mix(end, glow.w.exp2().min(end), opacity))
+      const light = glow.xyz.mul(opacity).add(vec3(...CHANNEL_COLOR).mul(air))
       result.addAssign(light.mul(this.power.div(STORED_POWER)).add(this.#bolt.sample(here)))
     })
     return result
@@ -309,22 +283,26 @@ export class LightningPasses {
     this.#density.update(_offset)
     this.power.value = power.all
     const { size, marchedSize, block, jitter } = this.#clouds.passes.viewRays.frame
-    const pixel = block.value * GLOW_PIXEL
-    const { x, y } = this.#texel.value.copy(marchedSize.value).divideScalar(GLOW_PIXEL).ceil()
-    this.#texel.value.set(1 / x, 1 / y)
-    this.#scale.value.copy(size.value).divideScalar(pixel)
+    const marched = marchedSize.value
+    const edge = block.value
+    const blocks = marched.clone().multiplyScalar(edge)
+    this.#scale.value.copy(size.value).divide(blocks)
     // Where the marched pixels of this frame lie in their blocks.
-    this.#offset.value.setScalar(-0.5).sub(jitter.value).divideScalar(pixel)
-    for (const [i, target] of this.#targets.entries()) {
-      target.setSize(x, y)
-      this.#passes[i].render(renderer, target)
-    }
+    this.#offset.value
+      .setScalar((edge - 1) / 2)
+      .sub(jitter.value)
+      .divide(blocks)
+    const { x, y } = marched.clone().divideScalar(GLOW_PIXEL).floor().addScalar(1)
+    for (const target of [this.#target, this.#smoothTarget]) target.setSize(x, y)
+    this.#pass.render(renderer, this.#target)
+    this.#smoothPass.render(renderer, this.#smoothTarget)
     this.#bolt.render(renderer, view, _offset, channel, power)
   }
 
   /** Frees render targets and passes. */
   dispose(): void {
-    const owned = [...this.#targets, ...this.#passes, this.#bolt, this.#density]
-    for (const each of owned) each.dispose()
+    const targets = [this.#target, this.#smoothTarget]
+    const passes = [this.#pass, this.#smoothPass, this.#bolt, this.#density]
+    for (const owned of [...targets, ...passes]) owned.dispose()
   }
 }
