@@ -116,7 +116,7 @@ export function wetSurface(water: SurfaceWater, options: WetSurfaceOptions = {})
 
   const wet = water.wetnessNode.mul(exposure)
   const filled = water.puddlesNode.mul(exposure).mul(1 + SHORE)
-  const half = (fwidth(hollows) as unknown as Float).mul(0.5).toConst()
+  const half = (fwidth(hollows) as unknown as Float).mul(0.5)
   const deep = hollows
     .add(half)
     .add(SHORE)
