@@ -19,8 +19,8 @@ export const levelGround: HeightSource = {
 /**
  * Hills of one octave of noise: a software renderer draws their pages in a fraction of the time that mountains take.
  *
- * @param wavelength - Of the noise [m].
- * @param height - Half of the height between valleys and summits [m].
+ * @param wavelength - Wavelength of the noise [m].
+ * @param height - Half the height between valleys and summits [m].
  * @param depth - Depth of their mean below the planet's surface [m].
  */
 export function hills(wavelength: number, height: number, depth = 0): HeightSource {
