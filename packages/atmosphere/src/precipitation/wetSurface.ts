@@ -73,10 +73,10 @@ const SNOW_ALBEDO = [0.93, 0.95, 0.96] as const
 const LEVEL = [0.97, 0.995] as const
 const HOLDS_SNOW = [0.45, 0.75] as const
 /**
- * Height over which puddles thin out to a film, over that of hollows: a road's texture is some 0.7 mm deep, hollows 2 mm. A pixel's height comes on top, half on each side.
+ * Height over which puddles thin out to a film, over that of hollows: the texture of smooth asphalt is some 0.4 mm deep, hollows 2 mm. A pixel's height comes on top, half on each side.
  * Smaller: hard edges (*Rain and snow in a street*).
  */
-const SHORE = 0.35
+const SHORE = 0.2
 
 /**
  * Albedo of a rough surface under a film of water: of the light that it scatters, 1 − 1/n² comes back by total reflection.
