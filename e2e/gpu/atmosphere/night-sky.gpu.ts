@@ -23,7 +23,7 @@ import {
   Vector3
 } from 'three'
 import { float, pass, vec4 } from 'three/tsl'
-import { RenderPipeline } from 'three/webgpu'
+import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { vanRhijnFactor } from '../../../packages/atmosphere/test/twins/night/airglow'
 import { starDirection } from '../../../packages/atmosphere/src/stars/starCells'
 import { luminanceOf } from '../../../packages/atmosphere/src/parameters/photometry'
@@ -167,6 +167,25 @@ gpuTest('has the light of the whole catalogue', async t => {
   expectTrue(Math.abs(sum / expected - 1) < 0.05, `${sum} lx of ${expected}`)
 })
 
+/** Draws a scene by a post effect. @param overlay - Air whose stars are drawn last; false for none. */
+async function drawScene(
+  renderer: WebGPURenderer,
+  scene: Scene,
+  camera: PerspectiveCamera,
+  overlay: Atmosphere | false
+): Promise<Picture> {
+  const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
+  const pipeline = new RenderPipeline(renderer)
+  pipeline.outputColorTransform = false
+  const color = scenePass.getTextureNode()
+  const depth = scenePass.getTextureNode('depth')
+  pipeline.outputNode = overlay ? starsOverlay(color, depth, camera, overlay) : color
+  const picture = await drawToFloat(renderer, () => pipeline.render())
+  scenePass.dispose()
+  pipeline.dispose()
+  return picture
+}
+
 gpuTest('draws the same stars after post-processing, behind what was drawn', async t => {
   const [width, height, fov] = [96, 54, 40]
   const renderer = await t.createRenderer({ width, height })
@@ -182,15 +201,7 @@ gpuTest('draws the same stars after post-processing, behind what was drawn', asy
     card.position.set(-1e6, 0, -1e6)
     camera.add(card)
     scene.add(camera)
-    const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
-    const pipeline = new RenderPipeline(renderer)
-    pipeline.outputColorTransform = false
-    const color = scenePass.getTextureNode()
-    const depth = scenePass.getTextureNode('depth')
-    pipeline.outputNode = overlay ? starsOverlay(color, depth, camera, atmosphere) : color
-    const picture = await drawToFloat(renderer, () => pipeline.render())
-    scenePass.dispose()
-    pipeline.dispose()
+    const picture = await drawScene(renderer, scene, camera, overlay && atmosphere)
     card.geometry.dispose()
     card.material.dispose()
     atmosphere.dispose()
@@ -223,15 +234,7 @@ gpuTest(
       camera.rotation.x = 0.6
       const scene = new Scene()
       scene.backgroundNode = skyBackground(atmosphere)
-      const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
-      const pipeline = new RenderPipeline(renderer)
-      pipeline.outputColorTransform = false
-      const color = scenePass.getTextureNode()
-      const depth = scenePass.getTextureNode('depth')
-      pipeline.outputNode = overlay ? starsOverlay(color, depth, camera, atmosphere) : color
-      const picture = await drawToFloat(renderer, () => pipeline.render())
-      scenePass.dispose()
-      pipeline.dispose()
+      const picture = await drawScene(renderer, scene, camera, overlay && atmosphere)
       atmosphere.dispose()
       return illuminance(picture, 40)
     }
