@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import { Vector3, type Texture } from 'three'
 import { Fn, If, float, texture, uv, vec2, vec4 } from 'three/tsl'
@@ -158,7 +159,7 @@ export class WeatherMap {
       const index = at.y.floor().toInt().toConst() as Int
       const layer = layerAt(field, index)
       const isFall = at.x.greaterThan(1).toConst()
-      const perPosition = isFall.select(FALL_PER_POSITION, PER_POSITION)
+      const perPosition = select(isFall, FALL_PER_POSITION, PER_POSITION)
       const position = at.fract().sub(0.5).div(perPosition).toConst() as Vec2
       const place = this.#placeAt(position, float(EVEN), layer.baseAltitude)
       const { flat, subpoint, footprint } = place
@@ -195,7 +196,7 @@ export class WeatherMap {
       const { subpoint, footprint } = this.#placeAt(position, this.#even, float(0))
       const found = weatherSystems(field, subpoint, footprint)
       const others = vec4(found.displacement.div(DISPLACEMENT), found.systems)
-      return at.x.lessThan(1).select(found.regions, others)
+      return select(at.x.lessThan(1), found.regions, others)
     })()
   }
 
@@ -273,10 +274,7 @@ export class WeatherMap {
     const inTile = flat.div(distance.add(EVEN)).mul(FALL_PER_POSITION).add(0.5)
     const at = inTile.add(vec2(1, float(index))).div(vec2(2, this.#field.layers.length))
     const found = this.#map.sample(at).level(0).toConst() as Vec4
-    return distance
-      .lessThan(FALL_DISTANCE)
-      .select(found, vec4(-1, 0, 0, 0))
-      .toConst()
+    return select(distance.lessThan(FALL_DISTANCE), found, vec4(-1, 0, 0, 0)).toConst()
   }
 
   /** Weather of whole regions at a displacement in the plane, from the map of it [m]. */

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { aerialPerspectiveTo, tableTarget, type AtmosphereView } from '@welkin/atmosphere'
 import {
   Box2,
@@ -162,10 +163,11 @@ export class BoltPass {
       const [start, stop] = [pixels(a), pixels(b)]
       const line = stop.sub(start).toConst() as Vec2
       const length = line.length().toConst() as Float
-      const along = length
-        .greaterThan(1e-3)
-        .select(line.div(length.max(1e-3)), vec2(1, 0))
-        .toConst() as Vec2
+      const along = select(
+        length.greaterThan(1e-3),
+        line.div(length.max(1e-3)),
+        vec2(1, 0)
+      ).toConst() as Vec2
       const beyond = corner.x.mul(2).sub(1).mul(BEYOND)
       const at = length.mul(corner.x).add(beyond).toConst() as Float
       const across = corner.y.mul(HALF_WIDTH).toConst() as Float
@@ -173,20 +175,20 @@ export class BoltPass {
       const [near, far] = [from, to].map(p => p.xyz.add(this.#place).length().toConst() as Float)
       const passing = vec2(passingAt(start, near), passingAt(stop, far)).toConst() as Vec2
       const isFirst = corner.x.lessThan(0.5)
-      place.assign(vec4(at, across, length, isFirst.select(near, far)))
+      place.assign(vec4(at, across, length, select(isFirst, near, far)))
       const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
       const displacement = toView
-        .mul(isFirst.select(from.xyz, to.xyz))
+        .mul(select(isFirst, from.xyz, to.xyz))
         .add(this.#placeView)
         .toConst()
       brightness.assign(vec3(from.w, to.w, displacement.z))
       const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
-      air.assign(transmittance.mul(isFirst.select(passing.x, passing.y)))
+      air.assign(transmittance.mul(select(isFirst, passing.x, passing.y)))
       // In front of the camera and not in clouds, or else nowhere.
       const isSeen = a.w.min(b.w).greaterThan(0).and(passing.x.max(passing.y).greaterThan(0))
       const inPicture = pixel.div(frame.size).mul(vec2(1, -1)).add(0.5)
       const drawn = inPicture.mul(this.#crop.xy).add(this.#crop.zw).sub(0.5)
-      return isSeen.select(vec4(drawn.mul(vec2(2, -2)), 0.5, 1), vec4(2, 2, 2, 1))
+      return select(isSeen, vec4(drawn.mul(vec2(2, -2)), 0.5, 1), vec4(2, 2, 2, 1))
     })()
     material.fragmentNode = Fn(() => {
       const here = vec2(screenUV).sub(this.#crop.zw).div(this.#crop.xy).toConst() as Vec2
@@ -198,7 +200,7 @@ export class BoltPass {
         Discard()
       })
       const width = distance.mul(field.pixelAngle).mul(WIDTH * Math.sqrt(2 * Math.PI))
-      const perMetre = brightness.y.greaterThan(0.5).select(this.#branchLight, this.#stemLight)
+      const perMetre = select(brightness.y.greaterThan(0.5), this.#branchLight, this.#stemLight)
       const luminance = square
         .mul(-0.5 / WIDTH ** 2)
         .exp()

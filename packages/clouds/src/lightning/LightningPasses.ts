@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import {
   aerialPerspectiveTo,
   FragmentPass,
@@ -189,10 +190,10 @@ export class LightningPasses {
         const opacity = shares.dot(vec4(1)).toConst() as Float
         const distance = shares.dot(seen.distances.sample(place).level(0)).div(opacity.max(1e-3))
         const rise = distance.sub(mean).mul(sign).div(width.add(depth))
-        return opacity.greaterThan(FACED).select(rise, STEEPEST).toConst()
+        return select(opacity.greaterThan(FACED), rise, STEEPEST).toConst()
       })
-      const slope = before.abs().lessThan(after.abs()).select(before, after)
-      normal.addAssign(aside.normalize().mul(slope.lessThan(STEEPEST).select(slope, 0)))
+      const slope = select(before.abs().lessThan(after.abs()), before, after)
+      normal.addAssign(aside.normalize().mul(select(slope.lessThan(STEEPEST), slope, 0)))
     }
     return { normal: normal.normalize().toConst(), width }
   }

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import type { RenderTarget, Vector3 } from 'three'
 import { Fn, If, float, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
@@ -173,7 +174,7 @@ export class StormDensity {
       const depth = float(0).toVar() as Variable<Float>
       const out = float(0).toVar() as Variable<Float>
       const outOf = (): Float =>
-        out.greaterThan(0).select(out, open).mul(passed(depth)).min(THINNEST).toConst()
+        select(out.greaterThan(0), out, open).mul(passed(depth)).min(THINNEST).toConst()
       loop('lightStep', SAMPLES, index => {
         // Finest at both ends: what is before the place makes its form.
         const even = float(index).add(0.5).div(SAMPLES).toConst() as Float
@@ -186,7 +187,7 @@ export class StormDensity {
           depth.addAssign(density.mul(even).mul(even.oneMinus()).mul(length))
         })
       })
-      return vec4(outOf(), out.greaterThan(0).select(1, 0), 0, 1)
+      return vec4(outOf(), select(out.greaterThan(0), 1, 0), 0, 1)
     })()
   }
 
@@ -222,7 +223,7 @@ export class StormDensity {
   /** Scaled extinction at a place in the flash's frame [1/m]. */
   #densityAt(place: Vec3): Float {
     const up = this.#heightOf(place)
-    return up.clamp(0, 1).equal(up).select(this.#read(this.#density, place).x.div(1000), 0)
+    return select(up.clamp(0, 1).equal(up), this.#read(this.#density, place).x.div(1000), 0)
   }
 
   /**

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { FragmentPass, outputs, tableTarget, type Outputs } from '@welkin/atmosphere'
 import { FloatType, NearestFilter } from 'three'
 import type { RenderTarget } from 'three'
@@ -124,11 +125,11 @@ export class CastLight {
       loop('castPlace', count * POINTS, index => {
         const isFall = index.greaterThanEqual(int(POINTS)).toConst()
         const own = componentAt(float(index).mod(POINTS))
-        const distance = isFall.select(fall?.dot(own) ?? 0, distances.dot(own)).toConst() as Float
-        If(isFall.select(distance, shares.dot(own)).greaterThan(0), () => {
+        const distance = select(isFall, fall?.dot(own) ?? 0, distances.dot(own)).toConst() as Float
+        If(select(isFall, distance, shares.dot(own)).greaterThan(0), () => {
           const dark = own.mul(this.#litAt(direction, distance, noise).oneMinus()).toConst() as Vec4
-          lit.subAssign(dark.mul(isFall.select(0, 1)))
-          litFall.subAssign(dark.mul(isFall.select(1, 0)))
+          lit.subAssign(dark.mul(select(isFall, 0, 1)))
+          litFall.subAssign(dark.mul(select(isFall, 1, 0)))
         })
       })
       points.assign(withByte(shares, lit))

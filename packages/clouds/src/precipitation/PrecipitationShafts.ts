@@ -1,5 +1,5 @@
 import type { AtmosphereView, ScatteringPhase } from '@welkin/atmosphere'
-import { checkOptions, fail } from '@welkin/geo'
+import { checkOptions, fail, select } from '@welkin/geo'
 import { MathUtils, Vector3, Vector4 } from 'three'
 import { If, int, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../density/CloudField'
@@ -243,7 +243,9 @@ export class PrecipitationShafts {
     const stretch = this.#stretchOn(field, direction, marched, distances)
     const parts = vec4(0, 1, 2, 3).add(0.5).div(POINTS) as Vec4
     const isThere = stretch.span.greaterThan(1)
-    return distanceAt(stretch, parts).mul(isThere.select(1, 0)).toConst()
+    return distanceAt(stretch, parts)
+      .mul(select(isThere, 1, 0))
+      .toConst()
   }
 
   /** Part of the light that reaches a distance, between the places of {@link placesOn}. */

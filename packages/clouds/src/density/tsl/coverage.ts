@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { atan, fract, log2, mix, vec2 } from 'three/tsl'
 import type { Float, Int, LevelTexture, Vec2, Vec3 } from '../../tsl-types'
 
@@ -43,7 +44,13 @@ function placeIn(
   up: Vec3
 ): { uv: Vec2; texel: Float } {
   const across = up.xy.length().max(1e-6).toConst() as Float
-  const longitude = atan(up.y, up.x.abs().max(1e-9).mul(up.x.lessThan(0).select(-1, 1)))
+  const longitude = atan(
+    up.y,
+    up.x
+      .abs()
+      .max(1e-9)
+      .mul(select(up.x.lessThan(0), -1, 1))
+  )
   // Geodetic, from the latitude on the sphere.
   const latitude = atan(up.z.mul(axialRatio), across)
   const east = fract(longitude.sub(map.corner.x).div(2 * Math.PI)).mul(2 * Math.PI)
@@ -74,9 +81,11 @@ export function mappedCoverage(
   const [first, second, third, fourth] = [shares.x, shares.y, shares.z, shares.w]
   const share = (
     map.perLayer
-      ? index
-          .lessThan(2)
-          .select(index.equal(0).select(first, second), index.equal(2).select(third, fourth))
+      ? select(
+          index.lessThan(2),
+          select(index.equal(0), first, second),
+          select(index.equal(2), third, fourth)
+        )
       : first
   )
     .clamp()

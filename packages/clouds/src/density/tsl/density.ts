@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { float, smoothstep } from 'three/tsl'
 import { densityForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
@@ -25,7 +26,7 @@ const LEAST_DENSE = 0.45
  * @param height - ĥ in the layer.
  */
 export const denseShare = (layer: LayerNodes, height: Float): Float =>
-  isStorm(layer).select(1, float(SOFT_EDGE).div(edgeAt(layer, height)).clamp(LEAST_DENSE, 1))
+  select(isStorm(layer), 1, float(SOFT_EDGE).div(edgeAt(layer, height)).clamp(LEAST_DENSE, 1))
 
 /**
  * Density over a layer's at its height, in [0, 1]: it rises from 0 at the edge, and is full inside.

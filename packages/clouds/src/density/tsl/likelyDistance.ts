@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { float, vec2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { stormBillows, stormFibres } from '../stormForm'
@@ -40,7 +41,7 @@ export const CAUTION = 0.7
  * @param strength - Strength of a `LayerSample`.
  */
 export const likelyDistance = (layer: LayerNodes, strength: Float): Float => {
-  const perStrength = isStorm(layer).select(LIKELY_OF_STORMS, LIKELY)
+  const perStrength = select(isStorm(layer), LIKELY_OF_STORMS, LIKELY)
   return strength.negate().max(0).mul(perStrength).div(layer.perShapePeriod)
 }
 
@@ -128,7 +129,8 @@ export function clearOfStorms(
     .toConst() as Float
   // Both samples are in clear air, and what lies before the end of the pair is gone by.
   const isSure = clear.greaterThan(length).and(resolution.unresolvedFraction.equal(0))
-  return isSure.select(
+  return select(
+    isSure,
     clear
       .sub(length)
       .max(1)

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { If, float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import type { Bool, Float, Vec3 } from '../../tsl-types'
@@ -134,7 +135,7 @@ export function sampleLayerAt(
   if (field.extinction)
     return samples.map(sample => {
       const extinction = field.extinction!(sample)
-      return { extinction, strength: extinction.greaterThan(0).select(1, CLEAR_STRENGTH) }
+      return { extinction, strength: select(extinction.greaterThan(0), 1, CLEAR_STRENGTH) }
     })
   const weather = unpackBackground(background)
   const resolution = resolutionAt(layer, footprintOf(field, middle))
@@ -154,7 +155,7 @@ export function sampleLayerAt(
       atEdge.reduce((any, each) => any.or(each)),
       () => {
         detail(field, layer, samples, footprint).forEach((fine, i) => {
-          found[i].strength.addAssign(atEdge[i].select(fine.mul(bodies[i].detailStrength), 0))
+          found[i].strength.addAssign(select(atEdge[i], fine.mul(bodies[i].detailStrength), 0))
         })
       }
     )

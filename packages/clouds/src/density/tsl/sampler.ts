@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { If, float, int, vec2, vec4 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { hasStorms } from '../kinds'
@@ -138,7 +139,7 @@ export function sampleLayerPair(
   const background = backgroundAt(field, layer, middle)
   const found = sampleLayerAt(field, layer, background, middle, samples, { detail: false })
   const inside = samples.map(({ altitude }, i) =>
-    isWithin(layer, heightIn(layer, altitude)).select(found[i].extinction, 0)
+    select(isWithin(layer, heightIn(layer, altitude)), found[i].extinction, 0)
   )
   return vec2(...(inside as [Float, Float])).toConst()
 }

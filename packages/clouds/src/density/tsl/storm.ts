@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { Fn, If, bool, float, mix, smoothstep } from 'three/tsl'
 import { layout, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
 import { stormPlaces, stormShape } from '../stormForm'
@@ -138,7 +139,7 @@ export const stormBody = /*#__PURE__*/ Fn(
       .sub(towerDistance.mul(towerDistance).add(overDome.mul(overDome)).sqrt())
       .toConst()
     const rise = y.sub(tall.mul(anvil)).toConst() as Float
-    const depth = tall.mul(rise.greaterThan(0).select(float(above), float(below))).toConst()
+    const depth = tall.mul(select(rise.greaterThan(0), float(above), float(below))).toConst()
     // Distance from an ellipsoid, to first order.
     const [across, up] = [distance.div(wide).toConst(), rise.div(depth).toConst()]
     const norm = across.mul(across).add(up.mul(up)).sqrt().toConst()

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { Fn, float, int, mat3, step, vec3, vec4 } from 'three/tsl'
 import { noisePeriods } from '../../layers/layerUniforms'
 import { cellOf, digitsOf, hashCell, wrapped } from '../../noise/tsl/cellHash'
@@ -58,10 +59,10 @@ const gapsAround = /*#__PURE__*/ Fn(
         .add((1 - jitter) / 2)
       const gap = side.mul(vec3(digits)).add(place).sub(part).toConst()
       const square = squareFrom(gap, up).toConst()
-      anvil.assign(square.lessThan(anvil.w).select(vec4(gap, square), anvil))
+      anvil.assign(select(square.lessThan(anvil.w), vec4(gap, square), anvil))
       // Less what is the same for all.
       const fromTower = square.sub(downwind.dot(gap).mul(2)).toConst()
-      tower.assign(fromTower.lessThan(tower.w).select(vec4(gap, fromTower), tower))
+      tower.assign(select(fromTower.lessThan(tower.w), vec4(gap, fromTower), tower))
     })
     return mat3(anvil.xyz, tower.xyz, vec3(0))
   },

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { float } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { columnForm, heightForm, strengthForm } from '../formConstants'
@@ -60,7 +61,7 @@ const LEAST_COSINE = 0.05
 export function slantCoverFactor(layer: LayerNodes, cosine: Float): Float {
   const { slantAspect } = columnForm
   const { slantOfStorms } = columnForm
-  const share = isStorm(layer).select(float(slantOfStorms), float(1)) as Float
+  const share = select(isStorm(layer), float(slantOfStorms), float(1)) as Float
   const tall = layer.thickness.mul(layer.perWeatherPeriod).mul(slantAspect).min(1).mul(share)
   return tall.mix(1, cosine.abs().max(LEAST_COSINE).reciprocal())
 }

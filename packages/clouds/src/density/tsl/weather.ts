@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { float, vec2, vec3 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { strengthForm } from '../formConstants'
@@ -44,7 +45,7 @@ function coverageOf(layer: LayerNodes, weather: Float, variance: Float, coverage
   )
   // Neither more nor less than all: the distribution has tails.
   const all = chance.sub(0.5).mul(contrast).add(0.5).clamp()
-  return coverage.greaterThan(0).select(all, 0)
+  return select(coverage.greaterThan(0), all, 0)
 }
 
 /**

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { float, smoothstep, vec2, vec3, vec4 } from 'three/tsl'
 import { beltForm, cyclones, frontForm, SOUTHERN_TURN, systemsStatistics } from '../systemsForm'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
@@ -35,9 +36,9 @@ export interface CycloneAround {
  */
 export function cycloneAround(zenith: Vec3): CycloneAround {
   const isSouth = zenith.z.lessThan(0).toConst()
-  const side = isSouth.select(float(-1), float(1)).toConst() as Float
-  const cos = isSouth.select(float(Math.cos(SOUTHERN_TURN)), float(1)).toConst() as Float
-  const sin = isSouth.select(float(Math.sin(SOUTHERN_TURN)), float(0)).toConst() as Float
+  const side = select(isSouth, float(-1), float(1)).toConst() as Float
+  const cos = select(isSouth, float(Math.cos(SOUTHERN_TURN)), float(1)).toConst() as Float
+  const sin = select(isSouth, float(Math.sin(SOUTHERN_TURN)), float(0)).toConst() as Float
   const here = vec3(
     zenith.x.mul(cos).sub(zenith.y.mul(sin)),
     zenith.x.mul(sin).add(zenith.y.mul(cos)),
@@ -49,9 +50,9 @@ export function cycloneAround(zenith: Vec3): CycloneAround {
   for (const { centre, radius, turn, front } of cyclones) {
     const cosine = here.dot(vec3(...centre)).toConst() as Float
     const isNearer = cosine.greaterThan(nearest.w).toConst()
-    nearest.assign(isNearer.select(vec4(...centre, cosine), nearest))
+    nearest.assign(select(isNearer, vec4(...centre, cosine), nearest))
     const own = vec4(1 / radius ** 2, turn, Math.cos(front), Math.sin(front))
-    form.assign(isNearer.select(own, form))
+    form.assign(select(isNearer, own, form))
   }
   const centre = nearest.xyz.toConst() as Vec3
   const fromMiddle = here.sub(centre).toConst() as Vec3
@@ -96,7 +97,7 @@ function frontAt(
   const length = smoothstep(-0.03, 0.05, along)
     .mul(smoothstep(0.3 * reach, reach, along).oneMinus())
     .toConst() as Float
-  const width = side.greaterThan(0).select(float(1 / ahead), float(1 / behind)) as Float
+  const width = select(side.greaterThan(0), float(1 / ahead), float(1 / behind)) as Float
   return { clouds: length.mul(bump(side.mul(width))), side, length }
 }
 

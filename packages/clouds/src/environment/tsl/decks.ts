@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { If, float, mix, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudLight } from '../../light/CloudLightTable'
@@ -141,10 +142,7 @@ function decksOf(
     diffuse: sum.x.add(1).reciprocal().toConst(),
     direct: sum.y.add(1).reciprocal().toConst(),
     beam: through,
-    top: sum.x
-      .greaterThan(1e-6)
-      .select(sum.z.div(sum.x.max(1e-6)), altitude)
-      .toConst()
+    top: select(sum.x.greaterThan(1e-6), sum.z.div(sum.x.max(1e-6)), altitude).toConst()
   })
   return { above: deck(above, beam), below: deck(below, float(1)) }
 }

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { Fn, float, mix, vec2 } from 'three/tsl'
 import type { CloudLight } from '../CloudLightTable'
 import { skyShareFit as fit } from '../cpu/skyShare'
@@ -41,7 +42,7 @@ export function cloudSource(light: CloudLight, sample: CloudSourceNodes): Float 
   return Fn(() => {
     const isolated = layered.oneMinus().toConst()
     // The slab's normal: up (or down, under a light below the horizon) for decks, towards the light for isolated clouds.
-    const side = sample.cosLight.lessThan(0).select(-1, 1).mul(layered).toConst()
+    const side = select(sample.cosLight.lessThan(0), -1, 1).mul(layered).toConst()
     const lift = side.mul(sample.cosLight).toConst()
     const scale = layered
       .mul(layered)

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { horizontalIrradiance, transmittanceToLight } from '@welkin/atmosphere'
 import { If, float, mix, smoothstep } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
@@ -31,8 +32,8 @@ export interface CloudShares {
 export function lightAt({ field, shadows }: ShadingContext, { up }: CloudSample): ShadingLight {
   const { view, night } = field
   const isMoonlit = isNight(field, up.dot(view.lightDirection)).toConst()
-  const direction = isMoonlit.select(night.moonDirection, view.lightDirection).toConst() as Vec3
-  const isMapped = isMoonlit.select(shadows.isMoonlit, shadows.isMoonlit.oneMinus()) as Float
+  const direction = select(isMoonlit, night.moonDirection, view.lightDirection).toConst() as Vec3
+  const isMapped = select(isMoonlit, shadows.isMoonlit, shadows.isMoonlit.oneMinus()) as Float
   const cosine = up.dot(direction).clamp(-1, 1).toConst() as Float
   return { direction, isMoonlit, isMapped, cosine }
 }

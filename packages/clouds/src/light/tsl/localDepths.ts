@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { float, int, mix, smoothstep, vec3 } from 'three/tsl'
 import { footprintOf } from '../../density/tsl/sample'
 import { extinctionNearby } from '../../density/tsl/sampler'
@@ -78,7 +79,7 @@ export function localDepths(
     mix(length.min(MOST_REACH), length, layered).toConst()
   )
   const slant = cosLight.abs().max(LOWEST_COSINE).reciprocal().toConst()
-  const toTop = cosLight.greaterThan(0).select(rise, fall).mul(slant).toConst() as Float
+  const toTop = select(cosLight.greaterThan(0), rise, fall).mul(slant).toConst() as Float
   const lowness = smoothstep(-LOW_LIGHT, -LOWEST_LIGHT, cosLight.abs().negate()).toConst() as Float
   const probed = sample.distance
     .mul(PROBED_GROWTH)
@@ -99,16 +100,17 @@ export function localDepths(
     const from = float(index).div(float(count)).toConst() as Float
     const to = float(index).add(1).div(float(count)).toConst() as Float
     const [start, end] = [from.mul(from).mul(probed), to.mul(to).mul(probed)]
-    const middle = isUpwards.select(above.mul(ABOVE), start.add(end).mul(0.5)).toConst() as Float
-    const direction = isUpwards.select(sample.up, toLight) as Vec3
+    const middle = select(isUpwards, above.mul(ABOVE), start.add(end).mul(0.5)).toConst() as Float
+    const direction = select(isUpwards, sample.up, toLight) as Vec3
     const offset = sample.offset.add(direction.mul(middle)).toConst() as Vec3
     const { altitude, up } = field.view.localCoordinates(offset)
     const { distance } = sample
     const extinction = extinctionNearby(field, weather, { offset, altitude, up, distance })
     found.addAssign(
-      isUpwards.select(
+      select(
+        isUpwards,
         vec3(0, 0, extinction),
-        vec3(index.equal(int(0)).select(extinction, 0), extinction.mul(end.sub(start)), 0)
+        vec3(select(index.equal(int(0)), extinction, 0), extinction.mul(end.sub(start)), 0)
       )
     )
   })
@@ -120,7 +122,7 @@ export function localDepths(
   const widest = top.sub(base).mul(WIDEST).div(layered.oneMinus().max(1e-3))
   const guess = mean.mul(toTop.min(widest).sub(probed).max(0)).toConst()
   const depthToLight = found.y.add(far.mul(isMapped)).add(guess.mul(unmapped)).toConst() as Float
-  const behind = cosLight.greaterThan(0).select(fall, rise).mul(slant).mul(mean)
+  const behind = select(cosLight.greaterThan(0), fall, rise).mul(slant).mul(mean)
   const through = all
     .mul(isMapped)
     .add(depthToLight.add(behind).mul(unmapped))

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { If, exp2, float, int, vec2 } from 'three/tsl'
 import { encodeDistance } from '../../temporal/tsl/packing'
 import {
@@ -63,9 +64,9 @@ export interface FoundOnRay {
  */
 export function packFound({ first, until, end, steps }: FoundOnRay): Float {
   const isMemory = until.greaterThan(0).and(first.equal(0)).toConst()
-  const begin = isMemory.select(until, first.greaterThan(0).select(first, end)) as Float
+  const begin = select(isMemory, until, select(first.greaterThan(0), first, end)) as Float
   const level = encodeDistance(begin).sub(FIRST).mul(PER_OCTAVE).floor().clamp(0, CLEAR)
-  const code = level.mul(2).add(isMemory.select(1, 0))
+  const code = level.mul(2).add(select(isMemory, 1, 0))
   const part = steps.div(256).min(1).mul(STEPS).round()
   return code
     .mul(STEPS + 1)
@@ -135,7 +136,7 @@ export function clearAir(
       // A place that a neighbour only remembers spreads no farther.
       If(isOwn.or(isMemory.not()), () => {
         nearest.assign(nearest.min(level))
-        farthest.assign(farthest.max(isClear.select(0, level)))
+        farthest.assign(farthest.max(select(isClear, 0, level)))
       })
       If(isOwn.and(isClear.or(isMemory)), () => {
         wasClear.assign(1)
@@ -144,7 +145,7 @@ export function clearAir(
     const begin = distanceOf(nearest)
       .mul(BEFORE)
       .sub(2 ** FIRST)
-    until.assign(nearest.equal(CLEAR).select(FAR_AWAY, begin.max(0)))
+    until.assign(select(nearest.equal(CLEAR), FAR_AWAY, begin.max(0)))
     If(wasClear.greaterThan(0), () => {
       from.assign(distanceOf(farthest.add(1)).mul(BEHIND))
     })

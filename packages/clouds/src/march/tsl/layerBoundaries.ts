@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { If, float, int } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { Float, Int } from '../../tsl-types'
@@ -18,20 +19,23 @@ export function crossings(
   const discriminant = radial.mul(radial).sub(product).toConst()
   // The roots of t² + 2bt + c as q and c/q, q = −(b ± √D): nothing cancels.
   const root = discriminant.max(0).sqrt()
-  const q = radial.add(radial.lessThan(0).select(root.negate(), root)).negate().toConst() as Float
+  const q = radial
+    .add(select(radial.lessThan(0), root.negate(), root))
+    .negate()
+    .toConst() as Float
   // Where q is 0, so is c.
-  const other = product.div(q.equal(0).select(1, q))
+  const other = product.div(select(q.equal(0), 1, q))
   const meets = discriminant.greaterThan(0)
   return {
-    near: meets.select(q.min(other), FAR_AWAY).toConst(),
-    far: meets.select(q.max(other), FAR_AWAY).toConst()
+    near: select(meets, q.min(other), FAR_AWAY).toConst(),
+    far: select(meets, q.max(other), FAR_AWAY).toConst()
   }
 }
 
 /** Distance to where a ray from the camera meets the sphere at altitude 0; `FAR_AWAY` if it does not. */
 export function groundDistance(field: CloudField, cosView: Float): Float {
   const { near } = crossings(field, cosView, float(0))
-  return near.greaterThan(0).select(near, FAR_AWAY).toConst()
+  return select(near.greaterThan(0), near, FAR_AWAY).toConst()
 }
 
 /**
@@ -43,7 +47,7 @@ export function groundDistance(field: CloudField, cosView: Float): Float {
 export function nextLayerBoundary(field: CloudField, cosView: Float, distance: Float): Float {
   const next = float(FAR_AWAY).toVar()
   const consider = (at: Float): void => {
-    next.assign(at.greaterThan(distance).select(next.min(at), next))
+    next.assign(select(at.greaterThan(distance), next.min(at), next))
   }
   forLayers(field, index => {
     const { baseAltitude, thickness } = layerAt(field, index)
@@ -100,7 +104,7 @@ export function layersAt(field: CloudField, altitude: Float): LayersAt {
       top.assign(top.max(layerTop))
       coverage.assign(coverage.max(layer.coverage))
       density.assign(density.max(layer.density))
-      first.assign(index.lessThan(first).select(index, first))
+      first.assign(select(index.lessThan(first), index, first))
       last.assign(index.add(1))
     })
   })

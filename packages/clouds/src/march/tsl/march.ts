@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { Break, If, float, int, vec4 } from 'three/tsl'
 import { loop, type Bool, type Float, type Int, type Variable, type Vec3 } from '../../tsl-types'
 import { hasStorms, knowsStorms } from '../../density/kinds'
@@ -119,7 +120,7 @@ export function marchClouds(
     const clouds = samplePair(field, weatherMap, clear, middle, length, direction, range)
     const found = { ...clouds, greatest: clouds.greatest.mul(light.depthScale) }
     const accept = (): void => {
-      first.assign(first.equal(0).select(position.max(1), first))
+      first.assign(select(first.equal(0), position.max(1), first))
       addPair(seen, clouds.extinction.mul(light.depthScale).mul(length).toConst(), places)
     }
     position.addAssign(advance(state, pair, quality, found, accept))
@@ -165,6 +166,6 @@ export function marchClouds(
       })
     }
   })
-  const nothing = entry.greaterThan(0).select(entry, end.min(FAR_AWAY)) as Float
+  const nothing = select(entry.greaterThan(0), entry, end.min(FAR_AWAY)) as Float
   return { ...seenClouds(seen, nothing), steps: float(pairs).mul(2), first }
 }

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
 import { componentAt } from '../../density/tsl/componentAt'
@@ -81,7 +82,7 @@ function enterStratum({ index, run, most }: SeenState, next: Float): void {
 export function endStratum(state: SeenState): void {
   const { shares, index } = state
   const share = shares.dot(componentAt(index))
-  const next = index.add(share.greaterThan(LEAST_SHARE).select(1, 0)).min(POINTS - 1)
+  const next = index.add(select(share.greaterThan(LEAST_SHARE), 1, 0)).min(POINTS - 1)
   enterStratum(state, next.toConst())
 }
 
@@ -175,9 +176,10 @@ export function seenClouds(state: SeenState, nothing: Float): SeenClouds {
   return {
     points: { distances, shares: shares.mul(all).toConst() },
     transmittance: passed,
-    distance: opacity
-      .greaterThan(1e-4)
-      .select(weightedDistance.div(opacity.max(1e-6)), nothing)
-      .toConst()
+    distance: select(
+      opacity.greaterThan(1e-4),
+      weightedDistance.div(opacity.max(1e-6)),
+      nothing
+    ).toConst()
   }
 }

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { If, bool, float } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { QualityUniforms } from '../quality'
@@ -151,14 +152,14 @@ export function nextSteps(
     .div(fine)
     .mul(GRADUAL)
     .add(1 - NEAR * GRADUAL)
-  const growth = gradual.min(isNear.select(NEAR_GROWTH, CLEAR_GROWTH))
+  const growth = gradual.min(select(isNear, NEAR_GROWTH, CLEAR_GROWTH))
   const least = fine.max(growing.mul(growth)).min(longest).toConst() as Float
   if (isVaried) jitter.assign(jitter.add(0.618034).fract())
   const caution = isVaried ? jitter.mul(SPREAD).add(CAUTION - SPREAD) : CAUTION
   const clear = likely.mul(caution).clamp(least, longest)
   const left = end.sub(position).mul(0.5)
   const hidden = transmittance.oneMinus().mul(HIDDEN_GROWTH).add(1)
-  const whole = isFine.select(fine.mul(hidden).min(longest), clear) as Float
+  const whole = select(isFine, fine.mul(hidden).min(longest), clear) as Float
   const length = whole.mul(part.max(0.1)).min(left).max(0.01).toConst() as Float
   part.assign(1)
   return { length, fine }
@@ -191,15 +192,15 @@ export function advance(
   const isCloudy = extinction.x.max(extinction.y).greaterThan(0).toConst()
   If(isCloudy.and(isFine.not()).and(length.greaterThan(fine.mul(LOOK_BACK))), () => {
     // Back to the last sample that was clear.
-    forward.assign(extinction.x.greaterThan(0).select(before.mul(-0.5), length.mul(0.5)))
+    forward.assign(select(extinction.x.greaterThan(0), before.mul(-0.5), length.mul(0.5)))
     isFine.assign(true)
     part.assign(jitter.max(LEAST_PART))
   }).Else(() => {
     const isNext = isCloudy.or(likelyDistance.lessThan(fine.mul(NEAR))).toConst()
-    part.assign(isNext.and(isFine.not()).select(jitter.max(LEAST_PART), 1))
+    part.assign(select(isNext.and(isFine.not()), jitter.max(LEAST_PART), 1))
     isFine.assign(isNext)
     // Where all layers are known to be clear, none was sampled: steps as long as in thin air would jump over towers.
-    finest.assign(greatest.greaterThan(0).select(stepIn(quality, greatest, longest), finest))
+    finest.assign(select(greatest.greaterThan(0), stepIn(quality, greatest, longest), finest))
     likely.assign(likelyDistance)
     isNear.assign(near)
     before.assign(length)

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { Fn, If, float, smoothstep, vec2 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import { billows, levelOf } from '../../density/tsl/billows'
@@ -172,11 +173,11 @@ export function fallenFrom(
     const kinds = nodes.hail.greaterThan(0).toInt().add(1) as Int
     loop('fallKind', kinds, kind => {
       const isHail = kind.greaterThan(0).toConst() as Bool
-      const fallen = fallAlong(isHail.select(lagOfHail, lag), place)
+      const fallen = fallAlong(select(isHail, lagOfHail, lag), place)
       const share = nodes.hail.mul(hailShare(fallen.rank)).toConst() as Float
       rank.assign(rank.max(fallen.rank))
-      rate.addAssign(isHail.select(0, fallen.rate.mul(share.oneMinus())))
-      hail.addAssign(isHail.select(fallen.rate.mul(share), 0))
+      rate.addAssign(select(isHail, 0, fallen.rate.mul(share.oneMinus())))
+      hail.addAssign(select(isHail, fallen.rate.mul(share), 0))
     })
   })
   return { rate, hail, snow: snowShare(altitude, nodes.freezingLevel), rank }

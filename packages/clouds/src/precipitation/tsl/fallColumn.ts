@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { Fn, float, smoothstep, vec3, vec4 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
@@ -79,5 +80,5 @@ export function fallColumn(
     }
   )
   const rank = stronger.div(share.max(1e-4)).oneMinus().max(-1)
-  return vec4(coverage.greaterThan(0).select(rank, -1), 0, shift).toConst()
+  return vec4(select(coverage.greaterThan(0), rank, -1), 0, shift).toConst()
 }

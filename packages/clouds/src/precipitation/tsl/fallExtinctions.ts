@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { Fn, vec2 } from 'three/tsl'
 import { layout, type Float } from '../../tsl-types'
 import { extinctionForm } from '../fallForm'
@@ -10,10 +11,7 @@ export const fallExtinctions = /*#__PURE__*/ Fn(
   ([rate, snow, hail]: [Float, Float, Float]) => {
     const { rain: r, snow: s, hail: h } = extinctionForm
     const positive = rate.max(1e-6).toConst()
-    const isThere = rate
-      .greaterThan(0)
-      .select(1 / 1000, 0)
-      .toConst()
+    const isThere = select(rate.greaterThan(0), 1 / 1000, 0).toConst()
     const drops = positive.pow(r[1]).mul(r[0]).mul(snow.oneMinus()).mul(isThere)
     const others = positive
       .pow(s[1])

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { mix } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import { crossings, FAR_AWAY } from '../../march/tsl/layerBoundaries'
@@ -27,10 +28,7 @@ export interface FallStretch {
 
 /** log₂ of where a marched ray ends: behind opaque clouds nothing is seen. @param distances - Distances of the clouds' points [m]. */
 export const endOf = (marched: Vec4, { x, y, z, w }: Vec4): Float =>
-  marched.z
-    .greaterThan(0)
-    .select(marched.y, encodeDistance(x.max(y).max(z.max(w))))
-    .toConst()
+  select(marched.z.greaterThan(0), marched.y, encodeDistance(x.max(y).max(z.max(w)))).toConst()
 
 /**
  * Stretch of a ray that is marched; its span is 0 or less where nothing falls. To be called inside of a shader function.
@@ -47,14 +45,14 @@ export function fallStretch(
   const shell = crossings(field, cosView, ceiling)
   const under = crossings(field, cosView, floor)
   const isBelow = view.height.lessThan(floor).toConst()
-  const from = shell.near.max(isBelow.select(under.far, 0)).toConst() as Float
+  const from = shell.near.max(select(isBelow, under.far, 0)).toConst() as Float
   const isLeaving = isBelow.not().and(under.near.greaterThan(0))
-  const leaving = shell.far.min(isLeaving.select(under.near, FAR_AWAY))
+  const leaving = shell.far.min(select(isLeaving, under.near, FAR_AWAY))
   const last = leaving.min(from.add(LONGEST)).toConst() as Float
-  const isNear = from.lessThan(FARTHEST).select(1, 0)
+  const isNear = select(from.lessThan(FARTHEST), 1, 0)
   const span = last.min(end).sub(from).mul(isNear).toConst() as Float
   const first = mix(FIRST, 1, from.div(from.add(span.max(1)))).toConst() as Float
-  return { from, span, first, end: end.lessThan(last).select(end, FAR_AWAY).toConst() }
+  return { from, span, first, end: select(end.lessThan(last), end, FAR_AWAY).toConst() }
 }
 
 /** Distance of a part of a stretch's steps, in [0, 1] [m]. */

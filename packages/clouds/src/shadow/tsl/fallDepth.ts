@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { float, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
@@ -34,5 +35,5 @@ export function fallMoments(
     const extinction = falling.extinctionAt(field, layer, sampleAt(at)).div(field.depthScale)
     sums.addAssign(vec3(1, at, at.mul(at)).mul(extinction.mul(length)))
   })
-  return { sums, entry: sums.x.greaterThan(0).select(front, NO_CLOUDS) }
+  return { sums, entry: select(sums.x.greaterThan(0), front, NO_CLOUDS) }
 }

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
 import type { Float } from '../../tsl-types'
@@ -46,12 +47,12 @@ export function layerSegment(
   const base = crossings(field, ray, baseAltitude)
   const meetsBase = base.front.greaterThan(base.back).toConst()
   // Through the shell down to its base, or by it; and beyond the base a second time.
-  const firstBack = meetsBase.select(base.front, top.back).toConst() as Float
+  const firstBack = select(meetsBase, base.front, top.back).toConst() as Float
   const second = base.back.add(top.back).abs()
   const isSecond = meetsBase.and(second.lessThan(top.front.add(firstBack).abs())).toConst()
   const least = maximumDistance.negate()
   return {
-    front: isSecond.select(base.back, top.front).clamp(least, maximumDistance).toConst(),
-    back: isSecond.select(top.back, firstBack).clamp(least, maximumDistance).toConst()
+    front: select(isSecond, base.back, top.front).clamp(least, maximumDistance).toConst(),
+    back: select(isSecond, top.back, firstBack).clamp(least, maximumDistance).toConst()
   }
 }

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { Break, If, bool, float, int, vec3 } from 'three/tsl'
 import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
@@ -64,7 +65,7 @@ export function segmentMoments(
     const middle = top.sub(width.mul(0.5)).toConst() as Float
     const square = middle.mul(middle).add(width.mul(width).div(12))
     sums.addAssign(vec3(1, middle, square).mul(extinction.mul(width)))
-    entry.assign(extinction.greaterThan(0).select(entry.max(top), entry))
+    entry.assign(select(extinction.greaterThan(0), entry.max(top), entry))
   }
   const position = front.toVar() as Float
   const search = edgeSearch(front, length)
@@ -75,12 +76,12 @@ export function segmentMoments(
     })
     const isCutting = search.cuts.greaterThan(0).toConst()
     const gap = search.clear.sub(search.cloudy)
-    const step = isCutting.select(gap.div(3), length).toConst() as Float
-    const from = isCutting.select(search.clear.sub(step.mul(0.5)), position).toConst() as Float
+    const step = select(isCutting, gap.div(3), length).toConst() as Float
+    const from = select(isCutting, search.clear.sub(step.mul(0.5)), position).toConst() as Float
     const [middle, first, second] = [1, 0.5, 1.5].map(steps => sampleAt(from.sub(step.mul(steps))))
     const found = sampleLayerPair(field, layer, middle, [first, second])
     /** First of the two in clouds, in steps; 2.5 if both are clear. */
-    const cloudy = found.x.greaterThan(0).select(0.5, found.y.greaterThan(0).select(1.5, 2.5))
+    const cloudy = select(found.x.greaterThan(0), 0.5, select(found.y.greaterThan(0), 1.5, 2.5))
     const at = from.sub(step.mul(cloudy)).toConst() as Float
     If(isCutting, () => {
       narrow(search, at, step)
@@ -108,7 +109,7 @@ const edgeSearch = (front: Float, length: Float): EdgeSearch => ({
   clear: front.toVar(),
   cloudy: front.toVar(),
   cuts: int(0).toVar(),
-  searches: int(length.greaterThan(SEARCH_FROM).select(SEARCHES, 0)).toVar()
+  searches: int(select(length.greaterThan(SEARCH_FROM), SEARCHES, 0)).toVar()
 })
 
 /** Puts the edge between a place in the cloud and a step before it. */

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { If, float, uv, vec2, vec4 } from 'three/tsl'
 import { outputs, type Outputs } from '@welkin/atmosphere'
 import type { CloudField } from '../../density/CloudField'
@@ -100,7 +101,7 @@ export function gatherCells(
     const mean = first.div(count).toConst() as Vec2
     const deviation = second.div(count).sub(mean.mul(mean)).max(0).sqrt()
     const distance = seen.y.div(seen.x).toConst() as Float
-    const transmittance = least.greaterThan(CLEAR).select(ALL_CLEAR, mean.y.min(NOT_CLEAR))
+    const transmittance = select(least.greaterThan(CLEAR), ALL_CLEAR, mean.y.min(NOT_CLEAR))
     light.assign(vec4(mean.x, transmittance, deviation))
     const middle = corner.add(0.5).mul(frame.block).add(frame.jitter).add(0.5).div(frame.size)
     const { direction } = viewRayAt(viewRays, middle.toConst())
@@ -108,8 +109,8 @@ export function gatherCells(
     distances.assign(
       vec4(
         distance,
-        ends.x.greaterThan(farthest).select(farthest, NEVER),
-        ends.y.sub(ends.x).lessThan(SAME_DISTANCE).select(ends.x.add(ends.y).mul(0.5), NOTHING),
+        select(ends.x.greaterThan(farthest), farthest, NEVER),
+        select(ends.y.sub(ends.x).lessThan(SAME_DISTANCE), ends.x.add(ends.y).mul(0.5), NOTHING),
         nearestLayer(field, altitude)
       )
     )

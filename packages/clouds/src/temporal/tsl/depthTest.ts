@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import type { Float, Vec4 } from '../../tsl-types'
 
 /**
@@ -17,5 +18,5 @@ export const SAME_DISTANCE = 0.1
 export function passesDepthTest(end: Float, { x: distance, y: otherEnd }: Vec4): Float {
   const isBehind = end.min(otherEnd).greaterThan(distance)
   const isSame = end.sub(otherEnd).abs().lessThan(SAME_DISTANCE)
-  return isBehind.or(isSame).select(1, 0)
+  return select(isBehind.or(isSame), 1, 0)
 }

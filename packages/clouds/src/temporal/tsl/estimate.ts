@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { If, float, mix, vec2, vec4 } from 'three/tsl'
 import { loop, type Bool, type Float, type Vec2, type Vec4 } from '../../tsl-types'
 import type { FrameInputs } from '../../march/tsl/viewRay'
@@ -124,7 +125,7 @@ function gatherCorners(
     moments.addAssign(vec4(value, value.mul(value)).mul(passes))
     sums.addAssign(vec4(weight, passes, apart.x.mul(seen), seen))
     const square = mix(kernel.first, kernel.second, step).toConst() as Vec2
-    nearest.assign(nearest.min(passes.greaterThan(0).select(square.x.add(square.y), NO_CORNER)))
+    nearest.assign(nearest.min(select(passes.greaterThan(0), square.x.add(square.y), NO_CORNER)))
   })
   const count = sums.y.max(1)
   const average = moments.div(count).toConst() as Vec4
@@ -135,8 +136,8 @@ function gatherCorners(
     mean.assign(total.div(count))
     statistics.assign(vec4(brightness(mean), mean.w, variance.sqrt()))
   })
-  light.assign(sums.x.greaterThan(1e-6).select(light.div(sums.x.max(1e-7)), mean))
-  distance.assign(sums.w.greaterThan(0).select(sums.z.div(sums.w.max(1e-9)), end))
+  light.assign(select(sums.x.greaterThan(1e-6), light.div(sums.x.max(1e-7)), mean))
+  distance.assign(select(sums.w.greaterThan(0), sums.z.div(sums.w.max(1e-9)), end))
 }
 
 /**
@@ -177,7 +178,7 @@ export function estimate(
   const { y: passed, w: deviation } = cell.light
   const isFilled = deviation.mul(MOST_ABOVE).add(passed).lessThan(MOST_PASSED)
   If(isOwn.or(isFilled).and(isWhole).and(light.w.lessThan(CLEAR)), () => {
-    const place = isOwn.select(kernel.blend.round(), kernel.blend)
+    const place = select(isOwn, kernel.blend.round(), kernel.blend)
     distance.assign(marched.distances.sample(at(corner.add(place))).level(0).x)
   })
   return {

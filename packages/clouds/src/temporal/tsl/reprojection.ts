@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { If, exp2, vec2, vec4 } from 'three/tsl'
 import type { Bool, Float, Mat3, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import type { FrameInputs, PixelRay } from '../../march/tsl/viewRay'
@@ -70,7 +71,7 @@ export function reprojectHistory(
   const shift = before.sub(pixelOf(farBefore)).length().toConst() as Float
   const isStill = motion.x.abs().max(motion.y.abs()).lessThan(STILL_MOTION)
   const from = pixel
-    .add(isStill.select(vec2(0), motion))
+    .add(select(isStill, vec2(0), motion))
     .add(0.5)
     .toConst() as Vec2
   const isInside = from.clamp(vec2(0), frame.size).equal(from).all().and(clipped.z.greaterThan(0))
@@ -86,16 +87,16 @@ export function reprojectHistory(
   // Parallax: clouds at the distance of history would have moved by this ratio of the shift more or less.
   const ratio = exp2(distance.sub(apart.x)).sub(1).abs()
   const parallax = ratio.mul(shift).div(MAX_PARALLAX).oneMinus().clamp()
-  const validity = isInside.select(passesDepthTest(clampedEnd, apart), 0).mul(parallax)
+  const validity = select(isInside, passesDepthTest(clampedEnd, apart), 0).mul(parallax)
   const { gainChange, maxSamples } = frame
   const isFast = motion.length().greaterThan(FAST_MOTION)
-  const most = isFast.select(maxSamples.min(FAST_SAMPLES), maxSamples)
+  const most = select(isFast, maxSamples.min(FAST_SAMPLES), maxSamples)
   const isSameEnd = clampedEnd.sub(apart.y).abs().lessThan(SAME_DISTANCE)
   return {
     distance: apart.x,
     hasClouds: apart.z.greaterThan(0),
     light: light.mul(vec4(gainChange, gainChange, gainChange, 1)).toConst(),
-    stationarity: isSameEnd.select(shift.oneMinus().max(0).mul(frame.steadiness), 0),
+    stationarity: select(isSameEnd, shift.oneMinus().max(0).mul(frame.steadiness), 0),
     samples: apart.z.abs().min(most).mul(validity).toConst()
   }
 }

@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { If, float, mix, smoothstep, uv, vec4 } from 'three/tsl'
 import { outputs, type Outputs } from '@welkin/atmosphere'
 import type { Bool, Float, Vec2, Vec4 } from '../../tsl-types'
@@ -58,14 +59,14 @@ function accumulate(
     const clipped = varianceClip(history.light, now, frame.clipDeviations, slack)
     // A pixel with a sample of its own learns nothing from its neighbours'.
     const isOwn = now.isOwn.or(history.samples.lessThan(1)).toConst() as Bool
-    const weight = isOwn.select(now.weight, 0).toConst()
+    const weight = select(isOwn, now.weight, 0).toConst()
     const all = history.samples.add(weight).toConst()
     const share = weight.div(all).toConst() as Float
     light.assign(mix(clipped, now.light, share))
     samples.assign(all.min(frame.maxSamples))
     // Clouds that this frame does not see are where they were; a distance is of all the light that is shown.
     If(history.hasClouds, () => {
-      const known = now.light.w.greaterThan(CLEAR).select(0, share)
+      const known = select(now.light.w.greaterThan(CLEAR), 0, share)
       distance.assign(mix(history.distance, distance, known))
     })
   })
@@ -125,7 +126,7 @@ export function upscale(
         const last = reprojectHistory(viewRays, history, pixel, ray, end, seen, origin, isSmooth)
         accumulate({ light: result, samples, distance }, viewRays, now, last)
       })
-      const signed = result.w.greaterThan(CLEAR).select(samples.negate(), samples)
+      const signed = select(result.w.greaterThan(CLEAR), samples.negate(), samples)
       light.assign(toHalf(result.max(0), dither))
       distances.assign(pack(distance, end, signed, dither))
     })
