@@ -13,6 +13,7 @@ import { Fn, float, texture, transpose, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { checkClouds } from '../check'
 import { CloudField, viewpointMapped } from '../density/CloudField'
+import { compiledByKinds, kindsOf } from '../density/kinds'
 import { WeatherMap } from '../density/WeatherMap'
 import type { CloudsNode } from '../march/CloudsNode'
 import { nightGain } from '../light/NightLight'
@@ -106,6 +107,8 @@ export class CloudEnvironment implements SkyOverlay {
   #field: CloudField | null = null
   #weatherMap: WeatherMap | null = null
   #pass: FragmentPass | null = null
+  /** Kinds of the layers that the shader was compiled for. */
+  #kinds = ''
   #drawn: CloudState | null = null
   #version = 0
 
@@ -192,7 +195,15 @@ export class CloudEnvironment implements SkyOverlay {
     const { width: size } = this.#target
     const [from, to] = [strip, strip + 1].map(part => Math.round((part * size) / STRIPS))
     this.#target.scissor.set(0, from, size, to - from)
+    this.#compile(field)
     this.#pass?.render(renderer, this.#target)
+  }
+
+  /** Compiles the shader anew where layers of storms come or go. */
+  #compile(field: CloudField): void {
+    const kinds = kindsOf(field)
+    if (kinds !== this.#kinds && this.#pass) this.#pass.material.needsUpdate = true
+    this.#kinds = kinds
   }
 
   /** Fixes clouds, sun and viewpoint for all strips of a picture. */
@@ -220,6 +231,7 @@ export class CloudEnvironment implements SkyOverlay {
     const view = viewNodes(atmosphere, camera)
     const field = new CloudField(atmosphere, layers, view, { noise, worldMap, extinction })
     const weatherMap = new WeatherMap(field)
+    const compiled = compiledByKinds(field)
     const draw = Fn(() => {
       const at = uv() as unknown as Vec2
       const local = octahedralDirection(at.mul(2).sub(1)).toConst()
@@ -230,7 +242,7 @@ export class CloudEnvironment implements SkyOverlay {
       const jitter = interleavedNoise(pixel, float(0))
       const ray = { direction, end, jitter }
       const marched = litClouds(
-        { field, weatherMap, light: light.nodes, shadows: maps, quality: this.#quality },
+        { field: compiled, weatherMap, light: light.nodes, shadows: maps, quality: this.#quality },
         ray
       )
       const directionView = (this.#fromMapped as unknown as Mat3).mul(direction)
@@ -238,6 +250,9 @@ export class CloudEnvironment implements SkyOverlay {
     })
     this.#weatherMap = weatherMap
     this.#pass = new FragmentPass('Welkin.CloudEnvironment', draw())
+    const { material } = this.#pass
+    const key = material.customProgramCacheKey.bind(material)
+    material.customProgramCacheKey = () => key() + kindsOf(field)
     return (this.#field = field)
   }
 
