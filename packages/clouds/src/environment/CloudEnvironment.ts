@@ -1,10 +1,4 @@
-import {
-  FragmentPass,
-  octahedralDirection,
-  octahedralPoint,
-  tableTarget,
-  viewNodes
-} from '@welkin/atmosphere'
+import { octahedralDirection, octahedralPoint, tableTarget, viewNodes } from '@welkin/atmosphere'
 import type { AtmosphereView, SkyOverlay, ViewNodes } from '@welkin/atmosphere'
 import { checkOptions, checkPositive, fail } from '@welkin/geo'
 import { Vector3 } from 'three'
@@ -13,7 +7,7 @@ import { Fn, float, texture, transpose, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { checkClouds } from '../check'
 import { CloudField, viewpointMapped } from '../density/CloudField'
-import { compiledByKinds, kindsOf } from '../density/kinds'
+import { PassByKinds } from '../density/kinds'
 import { WeatherMap } from '../density/WeatherMap'
 import type { CloudsNode } from '../march/CloudsNode'
 import { nightGain } from '../light/NightLight'
@@ -106,9 +100,7 @@ export class CloudEnvironment implements SkyOverlay {
   readonly #shift = vector3()
   #field: CloudField | null = null
   #weatherMap: WeatherMap | null = null
-  #pass: FragmentPass | null = null
-  /** Kinds of the layers that the shader was compiled for. */
-  #kinds = ''
+  #pass: PassByKinds | null = null
   #drawn: CloudState | null = null
   #version = 0
 
@@ -195,15 +187,7 @@ export class CloudEnvironment implements SkyOverlay {
     const { width: size } = this.#target
     const [from, to] = [strip, strip + 1].map(part => Math.round((part * size) / STRIPS))
     this.#target.scissor.set(0, from, size, to - from)
-    this.#compile(field)
     this.#pass?.render(renderer, this.#target)
-  }
-
-  /** Compiles the shader anew where layers of storms come or go. */
-  #compile(field: CloudField): void {
-    const kinds = kindsOf(field)
-    if (kinds !== this.#kinds && this.#pass) this.#pass.material.needsUpdate = true
-    this.#kinds = kinds
   }
 
   /** Fixes clouds, sun and viewpoint for all strips of a picture. */
@@ -231,28 +215,23 @@ export class CloudEnvironment implements SkyOverlay {
     const view = viewNodes(atmosphere, camera)
     const field = new CloudField(atmosphere, layers, view, { noise, worldMap, extinction })
     const weatherMap = new WeatherMap(field)
-    const compiled = compiledByKinds(field)
-    const draw = Fn(() => {
-      const at = uv() as unknown as Vec2
-      const local = octahedralDirection(at.mul(2).sub(1)).toConst()
-      const direction = (this.#axes as unknown as Mat4).mul(vec4(local, 0)).xyz.toConst() as Vec3
-      const end = groundDistance(field, direction.dot(view.up).clamp(-1, 1).toConst())
-      const maps = { ...shadows.nodes, shift: this.#shift }
-      const pixel = at.mul(this.#target.width).floor().toConst() as Vec2
-      const jitter = interleavedNoise(pixel, float(0))
-      const ray = { direction, end, jitter }
-      const marched = litClouds(
-        { field: compiled, weatherMap, light: light.nodes, shadows: maps, quality: this.#quality },
-        ray
-      )
-      const directionView = (this.#fromMapped as unknown as Mat3).mul(direction)
-      return withAerialPerspective(view, marched, directionView, this.#gain)
-    })
+    const context = { weatherMap, light: light.nodes, quality: this.#quality }
+    const draw = (compiled: CloudField) =>
+      Fn(() => {
+        const at = uv() as unknown as Vec2
+        const local = octahedralDirection(at.mul(2).sub(1)).toConst()
+        const direction = (this.#axes as unknown as Mat4).mul(vec4(local, 0)).xyz.toConst() as Vec3
+        const end = groundDistance(field, direction.dot(view.up).clamp(-1, 1).toConst())
+        const maps = { ...shadows.nodes, shift: this.#shift }
+        const pixel = at.mul(this.#target.width).floor().toConst() as Vec2
+        const jitter = interleavedNoise(pixel, float(0))
+        const ray = { direction, end, jitter }
+        const marched = litClouds({ ...context, field: compiled, shadows: maps }, ray)
+        const directionView = (this.#fromMapped as unknown as Mat3).mul(direction)
+        return withAerialPerspective(view, marched, directionView, this.#gain)
+      })()
     this.#weatherMap = weatherMap
-    this.#pass = new FragmentPass('Welkin.CloudEnvironment', draw())
-    const { material } = this.#pass
-    const key = material.customProgramCacheKey.bind(material)
-    material.customProgramCacheKey = () => key() + kindsOf(field)
+    this.#pass = new PassByKinds('Welkin.CloudEnvironment', field, draw)
     return (this.#field = field)
   }
 
