@@ -324,8 +324,10 @@ gpuTest(
 
 gpuTest('a pole that sweeps across leaves no halo', t =>
   withShared(t, async shared => {
+    const empty = new Sky(shared)
+    const without = await empty.settle(60)
+    empty.dispose()
     const sky = new Sky(shared)
-    const without = await sky.settle(60)
     const pole = new Mesh(new BoxGeometry(0.25, 40, 0.1), new MeshBasicMaterial({ color: 0 }))
     sky.scene.add(pole)
     await sky.settle(40)
