@@ -8,7 +8,7 @@ class ParenthesesNode extends Node {
   }
 
   override getNodeType(builder: NodeBuilder): string {
-    return this.node.getNodeType(builder) as string
+    return this.node.getNodeType(builder)
   }
 
   override generate(builder: NodeBuilder): string {
