@@ -264,7 +264,6 @@ gpuTest(
       await finishWork(renderer)
       return `${JSON.stringify(renderer.info.memory)}, objects ${JSON.stringify(objects)}`
     }
-    await round()
     const before = await round()
     t.note(`objects ${JSON.stringify(objects)}`)
     const after = await round()

@@ -302,7 +302,6 @@ gpuTest(
       atmosphere.dispose()
       return JSON.stringify(renderer.info.memory)
     }
-    round()
     const before = round()
     const after = round()
     expectTrue(before === after, `before ${before}, after ${after}`)

@@ -205,7 +205,6 @@ gpuTest('leaves no memory behind', async t => {
     await finishWork(renderer)
     return `${JSON.stringify(renderer.info.memory)}, objects ${JSON.stringify(objects)}`
   }
-  await round()
   const before = await round()
   const after = await round()
   expectTrue(after === before, `before ${before}\nafter ${after}`)
@@ -243,7 +242,6 @@ gpuTest(
       await finishWork(renderer)
       return `${JSON.stringify(renderer.info.memory)}, objects ${JSON.stringify(objects)}`
     }
-    await round()
     const before = await round()
     const after = await round()
     expectTrue(after === before, `before ${before}\nafter ${after}`)

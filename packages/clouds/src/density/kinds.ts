@@ -1,4 +1,6 @@
+import { FragmentPass } from '@welkin/atmosphere'
 import { isStorm } from '../layers/storms'
+import type { Vec4 } from '../tsl-types'
 import type { CloudField } from './CloudField'
 
 // Kinds of clouds that a shader has code for. Code that is not run costs time as well: it takes registers.
@@ -24,3 +26,26 @@ export function hasStorms({ kinds }: CloudField, index?: number): boolean | unde
 
 /** True if some layer is known to be one of storms. */
 export const knowsStorms = ({ kinds }: CloudField): boolean => kinds?.includes('s') === true
+
+/** A pass with code for the kinds that a field's layers have, compiled anew where layers of storms come or go. */
+export class PassByKinds extends FragmentPass {
+  readonly #field: CloudField
+  /** Kinds that the shader was compiled for. */
+  #kinds = ''
+
+  /** @param output - Value of a texel, by the field that it is to read. */
+  constructor(name: string, field: CloudField, output: (field: CloudField) => Vec4) {
+    super(name, output(compiledByKinds(field)))
+    this.#field = field
+    const { material } = this
+    const key = material.customProgramCacheKey.bind(material)
+    material.customProgramCacheKey = () => key() + kindsOf(field)
+  }
+
+  override render(...inputs: Parameters<FragmentPass['render']>): void {
+    const kinds = kindsOf(this.#field)
+    if (kinds !== this.#kinds) this.material.needsUpdate = true
+    this.#kinds = kinds
+    super.render(...inputs)
+  }
+}

@@ -1,10 +1,4 @@
-import {
-  FragmentPass,
-  octahedralDirection,
-  octahedralPoint,
-  tableTarget,
-  viewNodes
-} from '@welkin/atmosphere'
+import { octahedralDirection, octahedralPoint, tableTarget, viewNodes } from '@welkin/atmosphere'
 import type { AtmosphereView, SkyOverlay, ViewNodes } from '@welkin/atmosphere'
 import { checkOptions, checkPositive, fail } from '@welkin/geo'
 import { Vector3 } from 'three'
@@ -13,6 +7,7 @@ import { Fn, float, texture, transpose, uniform, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { checkClouds } from '../check'
 import { CloudField, viewpointMapped } from '../density/CloudField'
+import { PassByKinds } from '../density/kinds'
 import { WeatherMap } from '../density/WeatherMap'
 import type { CloudsNode } from '../march/CloudsNode'
 import { nightGain } from '../light/NightLight'
@@ -105,7 +100,7 @@ export class CloudEnvironment implements SkyOverlay {
   readonly #shift = vector3()
   #field: CloudField | null = null
   #weatherMap: WeatherMap | null = null
-  #pass: FragmentPass | null = null
+  #pass: PassByKinds | null = null
   #drawn: CloudState | null = null
   #version = 0
 
@@ -220,24 +215,23 @@ export class CloudEnvironment implements SkyOverlay {
     const view = viewNodes(atmosphere, camera)
     const field = new CloudField(atmosphere, layers, view, { noise, worldMap, extinction })
     const weatherMap = new WeatherMap(field)
-    const draw = Fn(() => {
-      const at = uv() as unknown as Vec2
-      const local = octahedralDirection(at.mul(2).sub(1)).toConst()
-      const direction = (this.#axes as unknown as Mat4).mul(vec4(local, 0)).xyz.toConst() as Vec3
-      const end = groundDistance(field, direction.dot(view.up).clamp(-1, 1).toConst())
-      const maps = { ...shadows.nodes, shift: this.#shift }
-      const pixel = at.mul(this.#target.width).floor().toConst() as Vec2
-      const jitter = interleavedNoise(pixel, float(0))
-      const ray = { direction, end, jitter }
-      const marched = litClouds(
-        { field, weatherMap, light: light.nodes, shadows: maps, quality: this.#quality },
-        ray
-      )
-      const directionView = (this.#fromMapped as unknown as Mat3).mul(direction)
-      return withAerialPerspective(view, marched, directionView, this.#gain)
-    })
+    const context = { weatherMap, light: light.nodes, quality: this.#quality }
+    const draw = (compiled: CloudField) =>
+      Fn(() => {
+        const at = uv() as unknown as Vec2
+        const local = octahedralDirection(at.mul(2).sub(1)).toConst()
+        const direction = (this.#axes as unknown as Mat4).mul(vec4(local, 0)).xyz.toConst() as Vec3
+        const end = groundDistance(field, direction.dot(view.up).clamp(-1, 1).toConst())
+        const maps = { ...shadows.nodes, shift: this.#shift }
+        const pixel = at.mul(this.#target.width).floor().toConst() as Vec2
+        const jitter = interleavedNoise(pixel, float(0))
+        const ray = { direction, end, jitter }
+        const marched = litClouds({ ...context, field: compiled, shadows: maps }, ray)
+        const directionView = (this.#fromMapped as unknown as Mat3).mul(direction)
+        return withAerialPerspective(view, marched, directionView, this.#gain)
+      })()
     this.#weatherMap = weatherMap
-    this.#pass = new FragmentPass('Welkin.CloudEnvironment', draw())
+    this.#pass = new PassByKinds('Welkin.CloudEnvironment', field, draw)
     return (this.#field = field)
   }
 

@@ -1,10 +1,11 @@
-import { FragmentPass, tableTarget } from '@welkin/atmosphere'
+import { tableTarget } from '@welkin/atmosphere'
 import type { AtmosphereView, LightSource, SharedRows } from '@welkin/atmosphere'
 import { Quaternion, Vector3 } from 'three'
 import type { RenderTarget, Vector4 } from 'three'
 import { texture } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { viewpointMapped, type CloudField } from '../density/CloudField'
+import { PassByKinds } from '../density/kinds'
 import {
   CASCADE_SIZE as SIZE,
   CascadeState,
@@ -87,7 +88,7 @@ export class CloudShadowMap {
   #strip = 0
   #spare: CascadeState
   readonly #ray: ShadowRayUniforms
-  readonly #pass: FragmentPass
+  readonly #pass: PassByKinds
   /** Viewpoint at the last update, from the planet's centre in the mapped space [m]. */
   readonly camera = new Vector3()
   readonly #anchor = new Vector3()
@@ -142,7 +143,8 @@ export class CloudShadowMap {
       halfWidth: number(),
       size: SIZE
     }
-    this.#pass = new FragmentPass('Welkin.CloudShadows', shadowRay(field, this.#ray, falling))
+    const draw = (compiled: CloudField) => shadowRay(compiled, this.#ray, falling)
+    this.#pass = new PassByKinds('Welkin.CloudShadows', field, draw)
   }
 
   /** True if there are maps for clouds and surfaces: not before the first update, and not far away. */

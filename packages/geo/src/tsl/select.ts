@@ -24,7 +24,7 @@ class SelectNode extends Node {
 
   /** That of the value with more components. */
   override getNodeType(builder: NodeBuilder): string {
-    const [type, other] = [this.ifTrue, this.ifFalse].map(each => each.getNodeType(builder)!)
+    const [type, other] = [this.ifTrue, this.ifFalse].map(each => each.getNodeType(builder))
     const lengthOf = (each: string): number => (builder as Builder).getTypeLength(each)
     return lengthOf(other) > lengthOf(type) ? other : type
   }

@@ -73,8 +73,11 @@ export function marchClouds(
     return { offset, ...view.localCoordinates(offset), distance: at }
   }
   const seen = seenState()
-  const state = stepState(jitter, hasStorms(field) !== false)
-  const stepGrowth = quality.stepGrowth.mul(knowsStorms(field) ? STORM_GROWTH : 1) as Float
+  // Environment maps, drawn now and then, step alike through skies of any kind.
+  const isCamera = known !== undefined
+  const state = stepState(jitter, !isCamera || hasStorms(field) !== false)
+  const growth = isCamera && knowsStorms(field) ? STORM_GROWTH : 1
+  const stepGrowth = quality.stepGrowth.mul(growth) as Float
   const segment = segmentState()
   const clear = vec4(0).toVar() as ClearLayers
   /** Pairs of samples so far, of all segments. */
@@ -86,7 +89,7 @@ export function marchClouds(
   const first = float(0).toVar()
 
   const { length } = field.layers
-  const isNested = known !== undefined && length >= NESTED_FROM
+  const isNested = isCamera && length >= NESTED_FROM
   const isDone = (until: Float): Bool => {
     const isSeen = seen.transmittance.lessThan(LEAST_TRANSMITTANCE)
     const isOver = position.greaterThanEqual(until).or(isSeen)
