@@ -14,7 +14,7 @@ import { rankOf } from '../harness/longest'
 import { withLimit } from '../harness/limit'
 import { outputFolder, Report } from '../harness/report'
 import { replaceModules } from '../harness/replaceModules'
-import { serveStatic } from '../harness/serve'
+import { serveStatic, texelMount } from '../harness/serve'
 import { shadowSizePlugin } from '../harness/shadow-size'
 import { compare, isBlank } from './compare'
 import { wrongIn } from './subjects'
@@ -145,6 +145,7 @@ const files = Object.fromEntries(
 )
 const root = fileURLToPath(new URL('page', import.meta.url))
 const server = await serveStatic([
+  texelMount(),
   {
     path: '/',
     folder: await bundlePage(root, files, [
