@@ -5,13 +5,17 @@ import {
   readdirSync,
   readFileSync,
   renameSync,
-  rmSync
+  rmSync,
+  statSync
 } from 'node:fs'
 import type { IncomingMessage, ServerResponse } from 'node:http'
 import { join } from 'node:path'
 import { fileURLToPath } from 'node:url'
 import { describeChromium } from './browser'
 import { outputFolder } from './report'
+
+/** Longest that a run takes [ms]. */
+const LONGEST_RUN = 2 * 3_600_000
 
 const root = fileURLToPath(new URL('../..', import.meta.url))
 
@@ -29,7 +33,7 @@ function sourcesOf(path: string): string[] {
 
 /**
  * Folder of texels that pages of tests have baked, for other browsers, steps and runs: a new one where sources, packages or the
- * browser have changed. Those before it are removed.
+ * browser have changed. Those before it are removed as soon as no run can need them.
  */
 export function texelFolder(): string {
   const hash = createHash('sha256').update(describeChromium())
@@ -40,7 +44,8 @@ export function texelFolder(): string {
   const all = join(outputFolder, 'texels')
   mkdirSync(join(all, name), { recursive: true })
   for (const other of readdirSync(all)) {
-    if (other !== name) rmSync(join(all, other), { recursive: true, force: true })
+    const isOld = Date.now() - statSync(join(all, other)).mtimeMs > LONGEST_RUN
+    if (other !== name && isOld) rmSync(join(all, other), { recursive: true, force: true })
   }
   return join(all, name)
 }
@@ -67,9 +72,12 @@ export function answerFromStore(
   if (request.method !== 'PUT' || !/^[\w-]+$/.test(name)) return false
   const file = join(folder, name)
   // Nobody reads half of one.
-  request.pipe(createWriteStream(file + PART)).on('finish', () => {
+  const part = createWriteStream(file + PART)
+  part.on('error', () => response.writeHead(500).end())
+  part.on('finish', () => {
     renameSync(file + PART, file)
     response.writeHead(204).end()
   })
+  request.pipe(part)
   return true
 }

@@ -103,7 +103,7 @@ gpuTest(
     const view = new View(renderer)
     const { atmosphere } = view
     const { parameters, tables } = atmosphere
-    // Air of this test alone: no other one has kept its tables.
+    // Air of this test alone: the tables that it keeps are those that it takes.
     const rayleighScaleHeight = 8123
     parameters.set({ rayleighScaleHeight })
     const draw = (): Promise<Picture> => drawToFloat(renderer, () => view.render('forward'))
