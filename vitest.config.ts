@@ -1,5 +1,17 @@
+import { readdirSync, readFileSync } from 'node:fs'
 import { defineConfig } from 'vitest/config'
 import { sourceAliases } from './scripts/aliases'
+
+/** Tests of the stories and of the tests' own code. */
+const others = ['stories/test', 'e2e/test'].flatMap(folder =>
+  readdirSync(folder, { recursive: true, encoding: 'utf8' })
+    .map(file => `${folder}/${file.replaceAll('\\', '/')}`)
+    .filter(file => file.endsWith('.test.ts'))
+)
+/** Those that replace modules or globals, or set up what a browser has: others must not see it. */
+const alone = others.filter(file =>
+  /vi\.(mock|stubGlobal)\(|sampledTextures/.test(readFileSync(file, 'utf8'))
+)
 
 export default defineConfig({
   resolve: { alias: sourceAliases },
@@ -20,9 +32,13 @@ export default defineConfig({
       },
       {
         extends: true,
-        // These set up what a browser has, and replace modules.
-        test: { name: 'stories', include: ['{stories,e2e}/{src,test}/**/*.test.ts'] }
-      }
+        test: {
+          name: 'stories',
+          include: others.filter(file => !alone.includes(file)),
+          isolate: false
+        }
+      },
+      { extends: true, test: { name: 'alone', include: alone } }
     ]
   }
 })

@@ -9,7 +9,7 @@ import { bundlePage } from '../harness/bundle'
 import { rankOf } from '../harness/longest'
 import { withLimit } from '../harness/limit'
 import { Report } from '../harness/report'
-import { serveStatic } from '../harness/serve'
+import { serveStatic, texelMount } from '../harness/serve'
 import type { Backend } from '../harness/backend'
 import { replaceModules } from '../harness/replaceModules'
 import { shadowSizePlugin } from '../harness/shadow-size'
@@ -111,7 +111,7 @@ const bundle = await bundlePage(join(folder, 'page'), files, [
   filterSamplesPlugin(),
   recipesPlugin()
 ])
-const server = await serveStatic([{ path: '/', folder: bundle }])
+const server = await serveStatic([texelMount(), { path: '/', folder: bundle }])
 const seconds: [suite: string, seconds: number][] = []
 /** Suites to come, by backend. */
 const queues = backends.map(backend => suites.map(suite => ({ suite, backend })))

@@ -101,5 +101,8 @@ export async function launchChromium(extraFlags: string[] = []): Promise<Browser
 export function describeChromium(): string {
   const path = resolveChromium()
   if (process.platform === 'win32') return path
-  return execFileSync(path, ['--version'], { encoding: 'utf8' }).trim()
+  return execFileSync(path, ['--version'], {
+    encoding: 'utf8',
+    stdio: ['ignore', 'pipe', 'ignore']
+  }).trim()
 }

@@ -46,7 +46,6 @@ export async function bundlePage(
       emptyOutDir: true,
       target: 'es2022',
       minify: false,
-      sourcemap: 'inline',
       assetsInlineLimit: 0,
       chunkSizeWarningLimit: 100_000,
       rolldownOptions: { checks: { pluginTimings: false } }

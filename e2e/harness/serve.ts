@@ -2,6 +2,7 @@ import { createReadStream, statSync } from 'node:fs'
 import { createServer } from 'node:http'
 import type { AddressInfo } from 'node:net'
 import { extname, join, normalize } from 'node:path'
+import { answerFromStore, texelFolder } from './texelStore'
 
 const contentTypes: Record<string, string> = {
   '.html': 'text/html; charset=utf-8',
@@ -20,6 +21,8 @@ const contentTypes: Record<string, string> = {
 export interface Mount {
   path: string
   folder: string
+  /** True where pages may list files, and write new ones. */
+  isStore?: boolean
 }
 
 export interface StaticServer {
@@ -42,10 +45,18 @@ function resolveFile(mounts: Mount[], pathname: string): string | undefined {
   return undefined
 }
 
+/** Mount of texels that pages of tests keep for each other. */
+export const texelMount = (): Mount => ({ path: '/texels/', folder: texelFolder(), isStore: true })
+
 /** Serves folders on a free port of the loopback interface; the first mount with the file wins. */
 export async function serveStatic(mounts: Mount[]): Promise<StaticServer> {
   const server = createServer((request, response) => {
     const { pathname } = new URL(request.url ?? '/', 'http://localhost')
+    const store = mounts.find(({ isStore, path }) => isStore && pathname.startsWith(path))
+    if (store !== undefined) {
+      const name = pathname.slice(store.path.length)
+      if (answerFromStore(store.folder, name, request, response)) return
+    }
     const file = resolveFile(mounts, pathname)
     if (file === undefined) {
       response.writeHead(pathname === '/favicon.ico' ? 204 : 404).end()

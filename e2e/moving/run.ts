@@ -6,7 +6,7 @@ import { bundlePage } from '../harness/bundle'
 import { withLimit } from '../harness/limit'
 import { replaceModules } from '../harness/replaceModules'
 import { Report } from '../harness/report'
-import { serveStatic } from '../harness/serve'
+import { serveStatic, texelMount } from '../harness/serve'
 import type { ExplorerState } from '../../stories/src/moving/Explorer'
 import { startStorybook, testLink } from './link'
 
@@ -262,6 +262,7 @@ async function move(context: BrowserContext, origin: string): Promise<void> {
 const root = fileURLToPath(new URL('page', import.meta.url))
 const storybook = startStorybook()
 const server = await serveStatic([
+  texelMount(),
   {
     path: '/',
     folder: await bundlePage(root, { 'plain.stories': stories }, [replaceModules(), worldData()])

@@ -3,7 +3,7 @@ import { fileURLToPath } from 'node:url'
 import { launchChromium } from '../harness/browser'
 import { bundlePage } from '../harness/bundle'
 import { replaceModules } from '../harness/replaceModules'
-import { serveStatic } from '../harness/serve'
+import { serveStatic, texelMount } from '../harness/serve'
 
 /**
  * Serves the validation's page to one Chromium for as long as it is used. Its pages share tables of diffuse light: of the same air
@@ -19,7 +19,7 @@ export async function withPages<T>(
   const folder = await bundlePage(fileURLToPath(new URL('page', import.meta.url)), {}, [
     replaceModules()
   ])
-  const server = await serveStatic([{ path: '/', folder }])
+  const server = await serveStatic([texelMount(), { path: '/', folder }])
   const browser = await launchChromium()
   try {
     const context = await browser.newContext()

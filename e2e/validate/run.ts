@@ -21,7 +21,7 @@ import { printColors, printQuantities, printSun, printWorst } from './print'
 import { readColorReference, readSkyReference } from './reference'
 import type { Path } from './request'
 import { missedShaftGoals, printShafts, validateShafts } from './shafts'
-import { bandStatistics, type Comparison } from './score'
+import { bandStatistics, everyNth, type Comparison } from './score'
 
 const usage = `npm run validate -- [options]
 
@@ -31,6 +31,7 @@ const usage = `npm run validate -- [options]
                              with --path march only if named
   --backend webgpu|webgl     by default webgpu
   --path volume|march        how the air along a ray is found, by default volume; or both (volume,march), each in turn
+  --every N                  takes every Nth sky colour alone: each has a sun, and thereby a volume, of its own
   --json                     print JSON alone; missed goals go to standard error
   --worst N                  also list the N largest errors of each quantity; not with --json
   --check                    exit with 1 if a goal is missed, with --json as without
@@ -131,6 +132,7 @@ async function main(): Promise<void> {
     return
   }
   const where = { backend: choice<Backend>('backend', values.backend, backends) }
+  const every = Math.max(count('every', values.every), 1)
   const paths = values.path.split(',').map(name => choice<Path>('path', name, ['volume', 'march']))
   const worst = count('worst', values.worst)
   const coverage =
@@ -183,7 +185,6 @@ async function main(): Promise<void> {
     const qualities = values.quality
       .split(',')
       .map(name => choice('quality', name, lightShaftsQualities))
-    const every = Math.max(count('every', values.every), 1)
     const { parameters } = readSkyReference(air)
     const isReversed = values.reversed
     // More samples are the same code on either backend, and in materials.
@@ -216,7 +217,8 @@ async function main(): Promise<void> {
   const skyFile = input(values.sky, 'sky.json')
   const spectralFile = input(values.spectral, 'spectral_sky.json')
   const sky = skyFile === undefined ? undefined : readSkyReference(skyFile)
-  let colors = spectralFile === undefined ? undefined : readColorReference(spectralFile)
+  const allColors = spectralFile === undefined ? undefined : readColorReference(spectralFile)
+  let colors = allColors && everyNth(allColors, every)
   if (colors?.length === 0) colors = undefined
   const requests = paths.flatMap(path => [
     ...(sky === undefined ? [] : [skyRequest(sky, { ...where, path })]),

@@ -11,6 +11,10 @@ export type BandName = (typeof bands)[number]['band']
 /** References below this part of the sun's irradiance are left out. */
 const NEGLIGIBLE = 1e-7
 
+/** Every so many of a list, the last of each so many. */
+export const everyNth = <T>(list: readonly T[], every: number): T[] =>
+  list.filter((_, i) => i % every === every - 1)
+
 /** One value, beside its reference. */
 export interface Comparison {
   sunZenith: number

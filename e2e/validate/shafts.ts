@@ -3,7 +3,7 @@ import type { AtmosphereParametersInit } from '@welkin/atmosphere'
 import { shaftGoal } from './goals'
 import type { Box, ShaftRequest } from './page/shafts'
 import { withPages } from './pages'
-import { quantile } from './score'
+import { everyNth, quantile } from './score'
 
 /** Rays that lose less than this part of their light are left out. */
 const NEGLIGIBLE = 0.01
@@ -64,7 +64,7 @@ export async function validateShafts(
   every = 1
 ): Promise<(ShaftFigures & { errors: ShaftError[] })[]> {
   const { boxes, cases: all } = JSON.parse(readFileSync(file, 'utf8')) as ShaftFile
-  const cases = all.filter((_, i) => i % every === every - 1)
+  const cases = everyNth(all, every)
   const views = cases.map(({ scene, camera, sun, rays }) => ({
     boxes: boxes[scene],
     camera,

@@ -8,7 +8,7 @@ import { launchChromium } from '../harness/browser'
 import { bundlePage } from '../harness/bundle'
 import { withLimit } from '../harness/limit'
 import { replaceModules } from '../harness/replaceModules'
-import { serveStatic } from '../harness/serve'
+import { serveStatic, texelMount } from '../harness/serve'
 import { shadowSizePlugin } from '../harness/shadow-size'
 
 /** Size of a picture in the gallery, and of its file at most [bytes]. */
@@ -37,7 +37,7 @@ async function drawAll(words: readonly string[], isAgain: boolean): Promise<void
   const root = fileURLToPath(new URL('page', import.meta.url))
   const plugins = [replaceModules(), filterSamplesPlugin(), shadowSizePlugin(), worldData()]
   const folder = await bundlePage(root, files, plugins)
-  const server = await serveStatic([{ path: '/', folder }])
+  const server = await serveStatic([texelMount(), { path: '/', folder }])
   const browser = await launchChromium()
   const context = await browser.newContext({ viewport, deviceScaleFactor: 1 })
   const open = async () => {

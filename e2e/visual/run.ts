@@ -14,7 +14,7 @@ import { rankOf } from '../harness/longest'
 import { withLimit } from '../harness/limit'
 import { outputFolder, Report } from '../harness/report'
 import { replaceModules } from '../harness/replaceModules'
-import { serveStatic } from '../harness/serve'
+import { serveStatic, texelMount } from '../harness/serve'
 import { shadowSizePlugin } from '../harness/shadow-size'
 import { compare, isBlank } from './compare'
 import { wrongIn } from './subjects'
@@ -145,6 +145,7 @@ const files = Object.fromEntries(
 )
 const root = fileURLToPath(new URL('page', import.meta.url))
 const server = await serveStatic([
+  texelMount(),
   {
     path: '/',
     folder: await bundlePage(root, files, [
@@ -181,10 +182,8 @@ async function withContext<T>(use: (context: BrowserContext) => Promise<T>): Pro
 }
 
 /** Pictures to take, by backend. */
-async function listPictures(): Promise<Shooting[][]> {
-  const cases = await withContext(async context =>
-    (await openPage(context)).evaluate(() => window.welkinVisual.list())
-  )
+async function listPictures(page: Page): Promise<Shooting[][]> {
+  const cases = await page.evaluate(() => window.welkinVisual.list())
   const chosen = cases.filter(({ file, story }) => {
     const name = `${file}-${story}`.toLowerCase()
     return positionals.length === 0 || positionals.some(word => name.includes(word))
@@ -199,22 +198,32 @@ async function listPictures(): Promise<Shooting[][]> {
   )
 }
 
+/**
+ * Takes pictures of a backend, and then the last ones of the other, as GPU tests do.
+ *
+ * @param start - First page to draw in.
+ */
+async function work(context: BrowserContext, start: Page, queues: Shooting[][], own: number) {
+  const next = () => queues[own].shift() ?? queues.find(queue => queue.length > 0)?.pop()
+  let page = start
+  for (let job = next(); job !== undefined; job = next()) {
+    if (await shoot(page, job.file, job.story, job.backend)) continue
+    await page.close()
+    page = await openPage(context)
+  }
+}
+
 try {
-  const queues = await listPictures()
-  // As GPU tests do: a backend's pictures, and then the last ones of the other. An update needs those of
-  // WebGPU first.
-  const workers = values.update ? 1 : Math.min(availableParallelism(), queues.length)
-  const work = async (own: number): Promise<void> =>
-    withContext(async context => {
-      const next = () => queues[own].shift() ?? queues.find(queue => queue.length > 0)?.pop()
-      let page = await openPage(context)
-      for (let job = next(); job !== undefined; job = next()) {
-        if (await shoot(page, job.file, job.story, job.backend)) continue
-        await page.close()
-        page = await openPage(context)
-      }
-    })
-  await Promise.all(Array.from({ length: workers }, (_, own) => work(own)))
+  await withContext(async first => {
+    const page = await openPage(first)
+    const queues = await listPictures(page)
+    // An update needs the pictures of WebGPU first.
+    const workers = values.update ? 1 : Math.min(availableParallelism(), queues.length)
+    const others = Array.from({ length: workers - 1 }, (_, i) =>
+      withContext(async context => work(context, await openPage(context), queues, i + 1))
+    )
+    await Promise.all([work(first, page, queues, 0), ...others])
+  })
 } finally {
   await server.close()
 }

@@ -53,7 +53,7 @@ export default meta
 type Story = StoryObj<RealOrNotArgs>
 
 /** Simulated cumulus on the left, procedural ones on the right. */
-export const Ground: Story = { tags: ['screenshot'] }
+export const Ground: Story = { tags: ['screenshot', 'webgpu-only'] }
 
 /** Simulated and procedural clouds, from among them. */
 export const Among: Story = { args: { view: 'among' } }

@@ -3,8 +3,8 @@ import { ivec2, textureLoad, uv } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { MoonSurfaceMap as DrawnMap } from '../../../packages/atmosphere/src/moon/MoonSurfaceMap'
 import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
-import { keepTexels, keptTexels, type Texels } from './kept-texels'
-import { isReusingTables, readTexels, waitFor } from './reuse-tables'
+import { keepTexels, type Texels } from './kept-texels'
+import { isKeepingTexels, readTexels, takeTexels, waitFor } from './reuse-tables'
 
 /** The moon's map, reused just as tables are: a software renderer takes seconds for its million texels. */
 export class MoonSurfaceMap extends DrawnMap {
@@ -15,13 +15,13 @@ export class MoonSurfaceMap extends DrawnMap {
     this.#renderer = renderer
     const backend = 'isWebGPUBackend' in renderer.backend ? 'webgpu' : 'webgl'
     const key = `moon-${this.target.width}.${backend}`
-    const kept = isReusingTables() ? keptTexels(key) : undefined
+    const kept = takeTexels(key)
     if (kept) {
       this.#restore(renderer, kept)
       return
     }
     super.prepare(renderer)
-    if (isReusingTables()) waitFor(this.#keep(renderer, key))
+    if (isKeepingTexels()) waitFor(this.#keep(renderer, key))
   }
 
   async #keep(renderer: Renderer, key: string): Promise<void> {

@@ -14,8 +14,8 @@ import {
   CloudNoise as BakedNoise,
   type CloudNoiseOptions
 } from '../../../packages/clouds/src/noise/CloudNoise'
-import { keepTexels, keptTexels, type Texels } from './kept-texels'
-import { isReusingTables, readTexels, waitFor } from './reuse-tables'
+import { keepTexels, type Texels } from './kept-texels'
+import { isKeepingTexels, readTexels, takeTexels, waitFor } from './reuse-tables'
 
 const pixel = (): Node<'ivec2'> => ivec2(int(screenCoordinate.x), int(screenCoordinate.y))
 
@@ -127,13 +127,13 @@ export class CloudNoise extends BakedNoise {
     const bake = volume.bake.bind(volume)
     volume.bake = function* (renderer) {
       const key = 'isWebGPUBackend' in renderer.backend ? `${name}.webgpu` : `${name}.webgl`
-      const kept = isReusingTables() ? keptTexels(key) : undefined
+      const kept = takeTexels(key)
       if (kept) {
         yield* restore(renderer, volume.target, kept)
         return
       }
       yield* bake(renderer)
-      if (isReusingTables()) waitFor(keep(renderer, volume.target, key))
+      if (isKeepingTexels()) waitFor(keep(renderer, volume.target, key))
     }
   }
 }

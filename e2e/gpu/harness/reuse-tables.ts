@@ -12,12 +12,14 @@ import type { AtmosphereUniforms } from '../../../packages/atmosphere/src/air/At
 import { DiffuseLightTable as BakedTable } from '../../../packages/atmosphere/src/diffuseLight/DiffuseLightTable'
 import { TransmittanceTable as BakedTransmittance } from '../../../packages/atmosphere/src/transmittance/TransmittanceTable'
 import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
+import { keepTexels, keptTexels, type Texels } from './kept-texels'
 import type { Table, TableRegion } from '../../../packages/atmosphere/src/tables/TableAtlas'
 
 /** Steps of a bake, as many as the library's has. */
 const BAKE_STEPS = 20
 
-let isReusing = false
+let isTaking = false
+let isKeeping = false
 const _readings = new Set<Promise<void>>()
 
 /** Key of a table: its name and all that it is made from, but not the colours, of which it knows none. */
@@ -48,14 +50,19 @@ export async function readTexels<T extends Uint8Array | Uint16Array>(
 async function keep(renderer: Renderer, region: TableRegion, key: string): Promise<void> {
   const values = await region.read(renderer)
   if (!values.every(value => Number.isFinite(value))) return
-  const halves = Array.from(values, half => DataUtils.toHalfFloat(half))
-  localStorage.setItem(key, halves.map(half => String.fromCharCode(half)).join(''))
+  const halves = Uint16Array.from(values, half => DataUtils.toHalfFloat(half))
+  await keepTexels(key, [new Uint8Array(halves.buffer)])
 }
 
-function restore(renderer: Renderer, region: TableRegion, kept: string, name: string): void {
+function restore(renderer: Renderer, region: TableRegion, kept: Texels, name: string): void {
   const { width, height } = region
-  const halves = Uint16Array.from({ length: kept.length }, (_, i) => kept.charCodeAt(i))
-  const source = new DataTexture(halves, width, height, RGBAFormat, HalfFloatType)
+  const source = new DataTexture(
+    new Uint16Array(kept.buffer),
+    width,
+    height,
+    RGBAFormat,
+    HalfFloatType
+  )
   source.minFilter = source.magFilter = NearestFilter
   source.needsUpdate = true
   const texel = ivec2(uv().mul(vec2(width, height)).floor())
@@ -76,14 +83,14 @@ export class TransmittanceTable extends BakedTransmittance {
 
   override bake(renderer: Renderer): void {
     const key = keyOf('transmittance', renderer, this.#uniforms)
-    const kept = isReusing ? localStorage.getItem(key) : null
-    if (kept !== null) {
+    const kept = takeTexels(key)
+    if (kept) {
       // By the name of the library's own pass, which tests count.
       restore(renderer, this.region, kept, 'Welkin.Transmittance')
       return
     }
     super.bake(renderer)
-    if (isReusing) waitFor(keep(renderer, this.region, key))
+    if (isKeeping) waitFor(keep(renderer, this.region, key))
   }
 }
 
@@ -101,10 +108,10 @@ export class DiffuseLightTable extends BakedTable {
 
   override *bake(renderer: Renderer): Generator<void, void, void> {
     const key = keyOf('diffuse light', renderer, this.#uniforms)
-    const kept = isReusing ? localStorage.getItem(key) : null
-    if (kept === null) {
+    const kept = takeTexels(key)
+    if (!kept) {
       yield* super.bake(renderer)
-      if (isReusing) waitFor(keep(renderer, this.region, key))
+      if (isKeeping) waitFor(keep(renderer, this.region, key))
       return
     }
     for (let step = 0; step < BAKE_STEPS; step++) yield
@@ -112,8 +119,12 @@ export class DiffuseLightTable extends BakedTable {
   }
 }
 
-/** True if tables are reused now. */
-export const isReusingTables = (): boolean => isReusing
+/** True if what is baked now is kept. */
+export const isKeepingTexels = (): boolean => isKeeping
+
+/** Bytes kept by a name, if they may be reused now. */
+export const takeTexels = (key: string): Texels | undefined =>
+  isTaking ? keptTexels(key) : undefined
 
 /** Has {@link keepTables} wait. What a test disposes of before it can be read is not kept. */
 export function waitFor(work: Promise<void>): void {
@@ -128,12 +139,14 @@ export async function keepTables(): Promise<void> {
 }
 
 /**
- * Has atmospheres, from now on, take tables of diffuse light and of optical depth that this or another page of the browser's
- * run of tests has baked, of the same parameters on the same backend: bit for bit what they would bake, for
- * a hundredth of the time. A software renderer takes seconds for a bake, longer than for most tests.
+ * Has atmospheres, from now on, take tables of diffuse light and of optical depth that any page of tests has baked, of the same
+ * parameters on the same backend: bit for bit what they would bake, for a hundredth of the time. A software renderer takes
+ * seconds for a bake, longer than for most tests.
  *
  * @param reuse - False: from now on, each bakes its own.
+ * @param take - False: each bakes its own, which is kept.
  */
-export function reuseTables(reuse: boolean): void {
-  isReusing = reuse
+export function reuseTables(reuse: boolean, take = reuse): void {
+  isKeeping = reuse
+  isTaking = take
 }

@@ -2,6 +2,7 @@ import { Vector3 } from 'three'
 import { modules } from 'virtual:modules'
 import type { mount } from '../../../stories/src/mount'
 import type { ExplorerState } from '../../../stories/src/moving/Explorer'
+import { loadTexels } from '../../gpu/harness/kept-texels'
 import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
 
 /** Frames over which a speed is measured. */
@@ -38,6 +39,7 @@ reuseTables(true)
 const show: MovingPage['show'] = async (file, story) => {
   const stories = (await modules[`${file}.stories`]?.()) as Record<string, Story>
   const { default: meta, [story]: shown } = stories
+  await loadTexels()
   const { render } = meta
   if (render === undefined) throw new Error(`${file}.stories.ts must render`)
   const args = { ...meta.args, ...shown.args }

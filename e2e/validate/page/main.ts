@@ -13,6 +13,7 @@ import type { Float, Vec4 } from '../../../packages/atmosphere/src/tsl-types'
 import { viewNodes, type ViewNodes } from '../../../packages/atmosphere/src/view/ViewNodes'
 import { createContext } from '../../gpu/harness/context'
 import { evaluateOnGpu } from '../../gpu/harness/evaluate'
+import { loadTexels } from '../../gpu/harness/kept-texels'
 import { keepTables, reuseTables } from '../../gpu/harness/reuse-tables'
 import { requestOffscreenFrames } from '../../harness/offscreenFrames'
 import type { EvaluationRequest, EvaluationResult, Viewpoint, Path, RayRequest } from '../request'
@@ -126,6 +127,7 @@ async function evaluateGrounds(
 }
 
 window.welkinEvaluate = async request => {
+  await loadTexels()
   const { context, finish } = createContext(request.backend)
   const parameters = new AtmosphereParameters(request.parameters)
   const ellipsoid = new Ellipsoid(parameters.bottomRadius)

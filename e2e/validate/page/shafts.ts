@@ -29,6 +29,7 @@ import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { createContext } from '../../gpu/harness/context'
 import { nextFrame } from '../../gpu/harness/graphics'
 import { readPicture } from '../../gpu/harness/picture'
+import { loadTexels } from '../../gpu/harness/kept-texels'
 import { keepTables } from '../../gpu/harness/reuse-tables'
 import type { Backend } from '../../harness/backend'
 
@@ -192,6 +193,7 @@ async function drawView(
 }
 
 window.welkinShafts = async request => {
+  await loadTexels()
   const { backend, parameters: init, isReversed, views } = request
   const { context, finish } = createContext(backend)
   const parameters = new AtmosphereParameters({ ...init, spectralToXYZ: unmixed() })
