@@ -23,8 +23,8 @@ import { dogAzimuth, leastDogAzimuth, PLATE_TILT } from './optics/sunDogs'
 import { crystalGrid, placeOf } from '../src/optics/cpu/phaseGrid'
 import { DOG_ELEVATIONS, DOG_SAMPLES } from '../src/optics/cpu/sunDogs'
 
-const RAYS = Number(process.argv[2] ?? 600_000)
-const DOG_RAYS = RAYS / 6
+/** Rays of each wavelength, and of each for a sun dog. */
+const RAYS = Number(process.argv[2] ?? 100_000)
 
 /** Columns twice as long as wide: half of the crystals. */
 const column: Prism = { halfLength: 2 }
@@ -139,7 +139,7 @@ const dogs = DOG_ELEVATIONS.map(elevation => {
   const spectra = Array.from({ length: DOG_SAMPLES }, () => wavelengths.map(() => 0))
   wavelengths.forEach((nm, w) => {
     const index = iceIndex(nm)
-    for (let i = 0; i < DOG_RAYS; i++) {
+    for (let i = 0; i < RAYS; i++) {
       const { out, weight } = tiltedRay(index, light)
       const azimuth = Math.abs(Math.atan2(-out[1], -out[0])) * toDegrees
       const rise = Math.asin(clamp(-out[2])) * toDegrees - elevation
@@ -151,7 +151,7 @@ const dogs = DOG_ELEVATIONS.map(elevation => {
       const [from, to] = [Math.max(part - half, 0), Math.min(part + half, 1)].map(dogAzimuth.at)
       // Both sides of the sun.
       if (elevation === 20 && Math.abs(offset) < 3) rises.push(rise)
-      spectra[bin][w] += weight / (((to - from) / toDegrees) * 2 * DOG_RAYS)
+      spectra[bin][w] += weight / (((to - from) / toDegrees) * 2 * RAYS)
     }
   })
   // Half of what is scattered is diffracted.
