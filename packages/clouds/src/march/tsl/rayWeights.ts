@@ -1,3 +1,4 @@
+import { select } from '@welkin/geo'
 import { mix, vec2 } from 'three/tsl'
 import type { Float, Vec2 } from '../../tsl-types'
 
@@ -13,7 +14,7 @@ const OWN_WEIGHT = 0.5
  * @param fallBlock - Pixels along an edge of those that share a ray. For 1 each has its own ray, and takes it as it is.
  */
 export function rayWeights(past: Vec2, step: Vec2, fallBlock: Float): Vec2 {
-  const own = fallBlock.greaterThan(1).select(OWN_WEIGHT, 1).toConst() as Float
+  const own = select(fallBlock.greaterThan(1), OWN_WEIGHT, 1).toConst() as Float
   const beside = step.mul(past).sub(own).add(1).mul(0.5)
   return mix(vec2(own), beside, step.abs()).toConst()
 }
