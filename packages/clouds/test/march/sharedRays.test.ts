@@ -8,7 +8,7 @@ const fract = (x: number): number => x - Math.floor(x)
 const noiseAt = (x: number, y: number, shift: number): number =>
   fract(fract(0.06711056 * x + 0.00583715 * y) * 52.9829189 + shift)
 
-/** What bilinear weights of the four rays around a pixel would be. */
+/** Bilinear weights, of the two rays around a place along an axis. */
 const bilinear = (place: number): Map<number, number> => {
   const first = Math.floor(place)
   return new Map([
@@ -24,7 +24,7 @@ const MARCHED = 20
 /**
  * Difference from pixel to pixel, root mean square, in a picture that stands still, marched in blocks of 4 × 4 of which four share a ray of what falls.
  *
- * @param errorOf - What a ray finds amiss, by the place of samples in its steps, in [0, 1).
+ * @param errorOf - Error of a ray, by the place of samples in its steps, in [0, 1).
  */
 function grainOf(
   weightsOf: (place: number) => Map<number, number>,
