@@ -1,9 +1,12 @@
 import { CloudLayers, CloudLightTable, CloudNoise, precipitationShafts } from '@welkin/clouds'
 import { BoxGeometry, Mesh, MeshBasicMaterial, Vector3 } from 'three'
-import { vec4 } from 'three/tsl'
+import { float, vec4 } from 'three/tsl'
+import { rayWeights } from '../../../packages/clouds/src/march/tsl/rayWeights'
 import { sharing } from '../../../packages/clouds/src/march/FallPass'
+import { sharedWeights } from '../../../packages/clouds/test/twins/rayWeights'
 import { CloudView, coarse, fog, onGround, viewSize } from '../harness/cloud-view'
-import { expectTrue } from '../harness/expect'
+import { evaluateOnGpu } from '../harness/evaluate'
+import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import type { Picture } from '../harness/picture'
 
@@ -29,6 +32,23 @@ gpuTest(
   'rain whose rays pixels share ends where a wall before it does',
   async t => {
     const renderer = await t.createRenderer(viewSize)
+    const places = [-0.4375, -0.25, 0, 0.25, 0.4375].flatMap(x =>
+      [-0.25, 0.375].map(y => [x, y] as const)
+    )
+    const steps = [-1, 0, 1].flatMap(x => [-1, 0, 1].map(y => [x, y] as const))
+    const cases = places.flatMap(([x, y]) => steps.map(([right, up]) => [x, y, right, up] as const))
+    const weights = await evaluateOnGpu(renderer, cases, input =>
+      vec4(
+        rayWeights(input.xy, input.zw, float(2)),
+        rayWeights(input.xy.mul(0), input.zw, float(1))
+      )
+    )
+    cases.forEach(([x, y, right, up], i) => {
+      const own = [right, up].map(step => (step === 0 ? 1 : 0))
+      const shared = [sharedWeights(x).get(right) ?? 0, sharedWeights(y).get(up) ?? 0]
+      const found = weights.subarray(4 * i, 4 * i + 4)
+      expectClose(found, [...shared, ...own], { absolute: 1e-6 }, `${x}, ${y}, ${right}, ${up}`)
+    })
     const [light, atmosphere] = [new CloudLightTable(), onGround()]
     const even = () => vec4(0.5)
     // Columns that are stronger than most: it rains.

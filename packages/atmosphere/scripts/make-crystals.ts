@@ -3,7 +3,9 @@
 import { writeFileSync } from 'node:fs'
 import { fileURLToPath } from 'node:url'
 import { sunlitColor } from './optics/colors'
+import { haloBeams, spreadBeams } from './optics/beamDiffraction'
 import {
+  meanShadow,
   randomAxes,
   shadowArea,
   toCrystal,
@@ -21,17 +23,14 @@ import { dogAzimuth, leastDogAzimuth, PLATE_TILT } from './optics/sunDogs'
 import { crystalGrid, placeOf } from '../src/optics/cpu/phaseGrid'
 import { DOG_ELEVATIONS, DOG_SAMPLES } from '../src/optics/cpu/sunDogs'
 
-const RAYS = Number(process.argv[2] ?? 600_000)
-const DOG_RAYS = RAYS / 6
+/** Rays of each wavelength, and of each for a sun dog. */
+const RAYS = Number(process.argv[2] ?? 100_000)
 
 /** Columns twice as long as wide: half of the crystals. */
 const column: Prism = { halfLength: 2 }
 
-/** Plates, 2.5 to 20 times as wide as thick: the other half. */
-const randomPlate = (): Prism => ({ halfLength: 0.05 * 8 ** random() })
-
-/** Mean shadow of a prism all ways: a quarter of its surface. */
-const meanShadow = ({ halfLength }: Prism): number => (12 * halfLength + 3 * Math.sqrt(3)) / 4
+/** Plates, 2.5 to 20 times as wide as thick: the other half. @param place - In [0, 1], each as often. */
+const plateAt = (place: number): Prism => ({ halfLength: 0.05 * 8 ** place })
 
 /** Numbers in [0, 1), the same in every run: a linear congruential generator, its bits stirred. */
 let state = 1
@@ -54,7 +53,7 @@ wavelengths.forEach((nm, w) => {
   const index = iceIndex(nm)
   let whole = 0
   for (let i = 0; i < RAYS; i++) {
-    const prism = i % 2 === 0 ? column : randomPlate()
+    const prism = i % 2 === 0 ? column : plateAt(random())
     const direction = toCrystal(randomAxes(random), [0, 0, 1])
     const weight = shadowArea(prism, direction) / meanShadow(prism)
     const out = traceRay(prism, index, direction, random)
@@ -76,9 +75,8 @@ wavelengths.forEach((nm, w) => {
   }
 })
 
-/** Mean over the sun's disc of a wavelength's bins, with diffraction and what goes straight on [1/sr]. */
-const diffraction = wavelengths.map(nm => discDiffraction(nm / 1000))
-function phaseAt(w: number, degrees: number, isBack: boolean): number {
+/** Light of a wavelength that rays have, over the sun's disc [1/sr]. */
+function tracedAt(w: number, degrees: number, isBack: boolean): number {
   const traced = (angle: number): number => {
     const place = placeOf(angle / toDegrees) * BINS - 0.5
     const from = Math.max(Math.min(Math.floor(place), BINS - 2), 0)
@@ -95,10 +93,34 @@ function phaseAt(w: number, degrees: number, isBack: boolean): number {
     if (!isBack && degrees < 21) at = Math.min(at, 20.7)
     sum += overSunDisc(traced, Math.min(Math.abs(at), 89.7)) / steps
   }
-  if (isBack) return sum / 2
+  return sum
+}
+
+/** Angles of light that beams spread, from the light to a quarter turn, and the angle from which on they do [°]: before it all is smooth. */
+const FINE = 1801
+const SPREAD_FROM = 12
+
+/** Columns, and as many plates: halves of the crystals. */
+const PLATES = 4
+const plates = Array.from({ length: PLATES }, (_, i) => plateAt((i + 0.5) / PLATES))
+const beams = haloBeams([...plates.map(() => column), ...plates])
+
+/** Light of each wavelength with halos, as wide as beams make them. */
+const haloes = wavelengths.map((nm, w) => {
+  const fine = Array.from({ length: FINE }, (_, i) => tracedAt(w, (90 * i) / (FINE - 1), false))
+  return spreadBeams(fine, SPREAD_FROM, beams, nm / 1000)
+})
+
+/** Mean over the sun's disc of a wavelength's light, with diffraction and what goes straight on [1/sr]. */
+const diffraction = wavelengths.map(nm => discDiffraction(nm / 1000))
+function phaseAt(w: number, degrees: number, isBack: boolean): number {
+  if (isBack) return tracedAt(w, degrees, true) / 2
+  const place = (degrees / 90) * (FINE - 1)
+  const from = Math.min(Math.floor(place), FINE - 2)
+  const [a, b] = haloes[w].slice(from, from + 2)
   const disc = degrees < SUN_RADIUS ? 1 / (Math.PI * (SUN_RADIUS / toDegrees) ** 2) : 0
   const diffracted = overSunDisc(diffraction[w], Math.min(degrees, 89.7))
-  return (sum + straight[w] * disc + diffracted) / 2
+  return (a + (b - a) * (place - from) + straight[w] * disc + diffracted) / 2
 }
 
 const rows = [
@@ -117,7 +139,7 @@ const dogs = DOG_ELEVATIONS.map(elevation => {
   const spectra = Array.from({ length: DOG_SAMPLES }, () => wavelengths.map(() => 0))
   wavelengths.forEach((nm, w) => {
     const index = iceIndex(nm)
-    for (let i = 0; i < DOG_RAYS; i++) {
+    for (let i = 0; i < RAYS; i++) {
       const { out, weight } = tiltedRay(index, light)
       const azimuth = Math.abs(Math.atan2(-out[1], -out[0])) * toDegrees
       const rise = Math.asin(clamp(-out[2])) * toDegrees - elevation
@@ -129,7 +151,7 @@ const dogs = DOG_ELEVATIONS.map(elevation => {
       const [from, to] = [Math.max(part - half, 0), Math.min(part + half, 1)].map(dogAzimuth.at)
       // Both sides of the sun.
       if (elevation === 20 && Math.abs(offset) < 3) rises.push(rise)
-      spectra[bin][w] += weight / (((to - from) / toDegrees) * 2 * DOG_RAYS)
+      spectra[bin][w] += weight / (((to - from) / toDegrees) * 2 * RAYS)
     }
   })
   // Half of what is scattered is diffracted.
@@ -162,7 +184,7 @@ function tiltedRay(
   ]
   const length = Math.hypot(...from)
   const direction = toCrystal([x, y, z], from.map(value => value / length) as Axes[0])
-  const plate = randomPlate()
+  const plate = plateAt(random())
   const weight = shadowArea(plate, direction) / meanShadow(plate)
   const [a, b, c3] = traceRay(plate, index, direction, random)
   return { out: [0, 1, 2].map(i => a * x[i] + b * y[i] + c3 * z[i]), weight }

@@ -42,6 +42,12 @@ export function shadowArea(prism: Prism, direction: Vector): number {
   return area
 }
 
+/** Mean shadow of a prism all ways: a quarter of its surface (Cauchy). */
+export const meanShadow = ({ halfLength }: Prism): number => (12 * halfLength + 2 * HEXAGON) / 4
+
+/** Share of a prism's surface that is its sides. */
+export const sideShare = (prism: Prism): number => (3 * prism.halfLength) / meanShadow(prism)
+
 /** Random point of a face. */
 function pointOn(face: number, { halfLength }: Prism, random: () => number): Vector {
   if (face >= 6) {

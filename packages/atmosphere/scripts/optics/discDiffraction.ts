@@ -1,5 +1,5 @@
 /** Radii of discs with the shadows of crystals [µm]: half of these, and half as large ones, count alike. */
-const RADII = [20, 28, 40, 56, 80]
+export const CRYSTAL_RADII = [20, 28, 40, 56, 80]
 
 /** Bessel function J₁, by its integral. */
 function besselJ1(x: number): number {
@@ -23,12 +23,12 @@ export function discDiffraction(wavelength: number): (degrees: number) => number
   const pattern = (degrees: number): number => {
     const sine = Math.sin((degrees * Math.PI) / 180)
     let sum = 0
-    for (const radius of RADII) {
+    for (const radius of CRYSTAL_RADII) {
       const size = (2 * Math.PI * radius) / wavelength
       const u = Math.max(size * sine, 1e-6)
       sum += (size ** 2 / (4 * Math.PI)) * ((2 * besselJ1(u)) / u) ** 2
     }
-    return sum / RADII.length
+    return sum / CRYSTAL_RADII.length
   }
   // Looked up, as it is needed often: even in the root of the angle.
   const count = 1200

@@ -25,8 +25,8 @@ const NAMES = ['regular', 'level'] as const
  * const light = new DropletLightTable({ crystals: iceCrystals({ level: 0.5 }) }) // of @welkin/clouds
  * ```
  *
- * Phase functions are by ray tracing, with the diffraction of discs of 20 to 80 µm; colours are those of sunlight at 35 wavelengths
- * over the sun's disc. Sun dogs stand at the sun's elevation while it is below 60°; what they have comes on top, at most 3 % of the light.
+ * Phase functions are by ray tracing, for crystals whose shadows are as large as discs of 20 to 80 µm in radius: they diffract light as those discs do, and the beams
+ * that leave them spread, so that the edge of the halo is 1.3° wide. Colours are those of sunlight at 35 wavelengths over the sun's disc. Sun dogs stand at the sun's elevation while it is below 60°; what they have comes on top, at most 3 % of the light.
  */
 export class IceCrystals implements ScatteringPhase {
   readonly #texture = new PhaseTexture('IceCrystals', 1 + DOG_ELEVATIONS.length)

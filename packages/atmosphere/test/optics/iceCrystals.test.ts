@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest'
 import { iceCrystals } from '@welkin/atmosphere'
+import { haloBeams, slitPattern, spreadBeams } from '../../scripts/optics/beamDiffraction'
 import { randomAxes, shadowArea, toCrystal, traceRay } from '../../scripts/optics/crystal'
 import { iceIndex } from '../../scripts/optics/refraction'
 import { crystalRows } from '../../src/optics/cpu/crystalRows'
@@ -51,6 +52,38 @@ describe('rays through prisms', () => {
   })
 })
 
+describe('beams that leave prisms', () => {
+  it('spread as light behind a slit: half at 0.443 λ/b, nothing at λ/b, all together 1', () => {
+    const beams = [{ width: 25, share: 1 }]
+    const at = (radians: number): number => slitPattern(beams, radians, 0.55)
+    expect(at(Math.asin((0.443 * 0.55) / 25)) / at(0)).toBeCloseTo(0.5, 3)
+    expect(at(Math.asin(0.55 / 25)) / at(0)).toBeCloseTo(0, 9)
+    let sum = 0
+    for (let i = -40_000; i <= 40_000; i++) sum += at(i * 2e-5) * 2e-5
+    expect(sum).toBeCloseTo(1, 2)
+  })
+
+  it('are narrower than the discs that have the shadows of their crystals, and have all of the light', () => {
+    const beams = haloBeams([{ halfLength: 2 }, { halfLength: 0.1 }])
+    expect(beams.reduce((sum, { share }) => sum + share, 0)).toBeCloseTo(1, 12)
+    // Columns have twice as much of their surface in sides, and more.
+    expect(beams[0].share).toBeGreaterThan(2 * beams[1].share)
+    expect(Math.min(...beams.map(({ width }) => width))).toBeGreaterThan(9)
+    expect(Math.max(...beams.map(({ width }) => width))).toBeLessThan(160)
+  })
+
+  it('keep the light of a ring, and none goes where none may', () => {
+    const sine = (i: number): number => Math.sin((i * Math.PI) / 1800)
+    const ring = Array.from({ length: 901 }, (_, i) => (i >= 300 && i < 320 ? 1 : 0))
+    const spread = spreadBeams(ring, 12, [{ width: 25, share: 1 }], 0.55)
+    const light = (phase: readonly number[]): number =>
+      phase.reduce((sum, value, i) => sum + value * sine(i), 0)
+    expect(light(spread) / light(ring)).toBeCloseTo(1, 3)
+    expect(Math.max(...spread.slice(0, 120))).toBe(0)
+    expect(spread[310]).toBeLessThan(0.95)
+  })
+})
+
 // Greenler 1980, "Rainbows, halos, and glories", ch. 2: halos of 22° and 46° with red inner edges, sun dogs at the sun's height.
 describe('crystals', () => {
   const { texels } = crystalRows(1, 1)
@@ -76,13 +109,20 @@ describe('crystals', () => {
     expect(at(all, 22.6, 1) / at(all, 20.5, 1)).toBeGreaterThan(8)
     expect(at(all, 24, 1)).toBeGreaterThan(1.5 * at(all, 27, 1))
     for (const [edge, least] of [
-      [21.8, 3],
+      [21.8, 1.6],
       [45.7, 1.5]
     ]) {
       expect(at(all, edge, 3) / at(all, edge, 0)).toBeGreaterThan(least)
     }
     expect(at(all, 47, 1) / at(all, 44, 1)).toBeGreaterThan(1.3)
     expect(at(all, 22.6, 1) / at(all, 47, 1)).toBeGreaterThan(5)
+    // Crystals of tens of micrometres spread the edge by a degree and more; the sun's disc alone, by half of one.
+    const [inside, peak] = [at(all, 19, 2), at(all, 22.7, 2)]
+    const [low, high] = [0.1, 0.9].map(part =>
+      degrees.find((_, i) => i > near(19) && all[4 * i + 2] > inside + part * (peak - inside))
+    ) as [number, number]
+    expect(high - low).toBeGreaterThan(1.1)
+    expect(high - low).toBeLessThan(2)
     // Rough ones have none.
     expect(at(rough, 22.6, 1) / at(rough, 20, 1)).toBeLessThan(1)
   })

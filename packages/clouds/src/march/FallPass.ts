@@ -3,15 +3,23 @@ import { NearestFilter, type RenderTarget } from 'three'
 import { float, If, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { ShadingContext } from '../light/tsl/shadingContext'
-import { CORNERS } from '../temporal/tsl/cells'
 import { interleavedNoise } from '../temporal/tsl/noisePattern'
 import { endOf } from '../precipitation/tsl/fallStretch'
 import { encodeDistance } from '../temporal/tsl/packing'
 import type { CloudTargets } from '../temporal/tsl/renderTargets'
-import type { Float, LevelTexture, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
+import {
+  loop,
+  type Float,
+  type LevelTexture,
+  type Variable,
+  type Vec2,
+  type Vec3,
+  type Vec4
+} from '../tsl-types'
 import { withAerialPerspective } from './tsl/aerialPerspective'
 import type { FallOnRays, LitRays } from './tsl/fallOnRays'
 import type { MarchedTargets } from './tsl/marchedPixel'
+import { rayWeights } from './tsl/rayWeights'
 import { viewRayAt, type FrameInputs } from './tsl/viewRay'
 
 /** Inputs of the pass. */
@@ -39,7 +47,7 @@ const LEAST_WEIGHT = 1e-3
 /**
  * Precipitation on the rays of a frame, with its light: two passes after the light of the clouds, which knows nothing of it. It is softer than clouds
  * are, and takes many steps: four marched pixels share a ray between them, others in each round, and pixels take what lies between the
- * four rays around them, before and behind their clouds. What falls is kept with its stretch of the ray, so that clouds and ground hide it at
+ * rays around them, before and behind their clouds. What falls is kept with its stretch of the ray, so that clouds and ground hide it at
  * their own edges.
  */
 export class FallPass {
@@ -158,37 +166,40 @@ function spread(
     const size = marchedSize.div(fallBlock).ceil().toConst() as Vec2
     const pixel = here.mul(marchedSize).floor().sub(fallPixel).sub(middleOf(fallBlock))
     const place = pixel.div(fallBlock).toConst() as Vec2
-    const first = place.floor().toConst() as Vec2
-    const part = place.sub(first).toConst() as Vec2
-    const corners = CORNERS.map(([x, y]) => {
-      const index = first.add(vec2(x, y)).clamp(vec2(0), size.sub(1))
-      const at = index.add(0.5).div(size).toConst() as Vec2
-      const own = fallen[1].sample(at).level(0).toConst() as Vec4
-      const between = (x ? part.x : part.x.oneMinus()).mul(y ? part.y : part.y.oneMinus())
-      return { at, own, between }
-    })
-    const most = corners.reduce<Float>((sum, { own }) => sum.max(own.x), float(0))
+    const nearest = place.add(0.5).floor().toConst() as Vec2
+    const past = place.sub(nearest).toConst() as Vec2
     const ofClouds = shaded.light.sample(here).level(0).toConst() as Vec4
     const known = shaded.distances.sample(here).level(0).toConst() as Vec4
     color.assign(ofClouds)
     seen.assign(known)
-    If(most.greaterThan(0), () => {
-      const { ray } = cast.rayAt(here)
-      const { shares } = cast.pointsAt(here)
-      const distances = marched.distances.sample(here).level(0).toConst() as Vec4
-      const end = endOf(ray, distances)
-      const weighted = corners.map(({ at, own, between }) => {
-        const fits = own.w.sub(end).smoothstep(...SAME_END)
-        return { at, own, weight: between.mul(fits.add(LEAST_WEIGHT)).toConst() }
-      })
-      const weights = weighted.reduce<Float>((sum, { weight }) => sum.add(weight), float(0))
-      /** Sums of opacity, and by that of its stretch. */
-      const sums = vec3(0).toVar() as Variable<Vec3>
-      const light = vec4(0).toVar() as Variable<Vec4>
-      for (const { at, own, weight } of weighted) {
+    const { ray } = cast.rayAt(here)
+    const distances = marched.distances.sample(here).level(0).toConst() as Vec4
+    const end = endOf(ray, distances)
+    const weights = float(0).toVar() as Variable<Float>
+    /** Sums of opacity, and by that of its stretch. */
+    const sums = vec3(0).toVar() as Variable<Vec3>
+    const light = vec4(0).toVar() as Variable<Vec4>
+    loop('fallRay', 9, index => {
+      const row = float(index).div(3).floor().toConst() as Float
+      const step = vec2(float(index).sub(row.mul(3)), row)
+        .sub(1)
+        .toConst() as Vec2
+      const share = rayWeights(past, step, fallBlock)
+      const at = nearest.add(step).clamp(vec2(0), size.sub(1)).add(0.5).div(size).toConst() as Vec2
+      const own = fallen[1].sample(at).level(0).toConst() as Vec4
+      const fits = own.w
+        .sub(end)
+        .smoothstep(...SAME_END)
+        .add(LEAST_WEIGHT)
+      const weight = share.x.mul(share.y).mul(fits).toConst() as Float
+      weights.addAssign(weight)
+      If(own.x.mul(weight).greaterThan(0), () => {
         sums.addAssign(vec3(1, own.yz).mul(own.x.mul(weight)))
         light.addAssign(fallen[0].sample(at).level(0).mul(weight))
-      }
+      })
+    })
+    If(sums.x.greaterThan(0), () => {
+      const { shares } = cast.pointsAt(here)
       const perWeight = weights.reciprocal().toConst() as Float
       const opacity = sums.x.mul(perWeight).toConst() as Float
       const [middle, half] = [sums.y, sums.z].map(
