@@ -33,5 +33,3 @@ export {
   setOptions
 } from './check'
 export { checkEllipsoid } from './Ellipsoid'
-// A shader function that Welkin's packages share; not for use elsewhere.
-export { select } from './tsl/select'

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { HalfFloatType, LinearSRGBColorSpace, Matrix3, PerspectiveCamera, Vector3 } from 'three'
 import { Fn, positionWorldDirection, vec4 } from 'three/tsl'
 import { CubeRenderTarget, RendererUtils } from 'three/webgpu'
@@ -76,7 +75,7 @@ export class SkyCube {
       const height = direction.dot(this.#up).sub(this.#view.viewpoint.cosHorizon).toConst()
       const isNear = height.lessThan(0).and(height.greaterThan(-MARGIN / this.#size))
       // With the world's axes a direction in view space is one in world space.
-      const raised = direction.add(this.#up.mul(select(isNear, height.negate().add(1e-4), 0)))
+      const raised = direction.add(this.#up.mul(isNear.select(height.negate().add(1e-4), 0)))
       const mapped = this.#view.toMapped(raised).normalize().toConst() as Vec3
       const sky = skyColor(this.#view, mapped, null)
       const light = this.#overlay?.over(this.#view, mapped, sky) ?? sky

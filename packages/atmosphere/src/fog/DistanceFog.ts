@@ -1,6 +1,6 @@
 import { If, float, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { setOptions, select } from '@welkin/geo'
+import { setOptions } from '@welkin/geo'
 import type { AtmosphereView, ViewedAtmosphere } from '../view/AtmosphereView'
 import { checkFade, checkRange } from '../check'
 import { SKY_DISTANCE, type LayerRay, type ShadowedMedium, type SkyLayer } from '../view/SkyLayer'
@@ -121,7 +121,7 @@ export class DistanceFog implements SkyLayer {
   shadowed(ray: LayerRay & { distance: Float }, isSun: boolean): ShadowedMedium {
     // The sky has no such fog.
     const isSky = ray.distance.greaterThanEqual(SKY_DISTANCE)
-    const through = select(isSky, 1, this.#depth(ray.distance).negate().exp()).toConst() as Float
+    const through = isSky.select(1, this.#depth(ray.distance).negate().exp()).toConst() as Float
     const dimmed = {
       front: float(0),
       transmittance: through,

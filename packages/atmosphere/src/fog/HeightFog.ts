@@ -2,7 +2,7 @@ import type { Vector4 } from 'three'
 import { Vector3 } from 'three'
 import { If, exp, vec4 } from 'three/tsl'
 import type { NodeFrame, Renderer, UniformNode } from 'three/webgpu'
-import { checkOptions, select } from '@welkin/geo'
+import { checkOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import type { LightSource } from '../view/LightSource'
@@ -194,7 +194,7 @@ export class HeightFog implements SkyLayer {
     const { source, viewpoint } = ray.view
     const isSky = ray.distance.greaterThanEqual(SKY_DISTANCE)
     const all = rayLimits(viewpoint, ray.cosView).length
-    const distance = select(isSky, all, ray.distance).toConst() as Float
+    const distance = isSky.select(all, ray.distance).toConst() as Float
     const fog = this.#along({ ...ray, distance })
     const isLit = isSun || this.sources.includes(source)
     const [once, often] = [vec4(0).toVar(), vec4(0).toVar()]
@@ -238,7 +238,7 @@ export class HeightFog implements SkyLayer {
     const inFogAt = (visible: Float): Float => {
       const growth = visible.mul(fall).div(here).clamp(-0.99, 1e20).toConst()
       const isLevel = growth.abs().lessThan(1e-3)
-      const factor = select(isLevel, growth.mul(-0.5).add(1), growth.add(1).log().div(growth))
+      const factor = isLevel.select(growth.mul(-0.5).add(1), growth.add(1).log().div(growth))
       return visible.div(here).mul(factor).toConst()
     }
     const distanceTo = (inFog: Float): Float => inFog.add(above).clamp(0, distance).toConst()

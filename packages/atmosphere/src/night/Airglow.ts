@@ -1,5 +1,5 @@
 import { If, float, vec4 } from 'three/tsl'
-import { checkNonNegative, setOptions, select } from '@welkin/geo'
+import { checkNonNegative, setOptions } from '@welkin/geo'
 import type { Spectrum } from '../parameters/AtmosphereParameters'
 import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkRange, checkSpectrum } from '../check'
@@ -204,7 +204,7 @@ export class Airglow implements SkyLayer {
       isSeen: this.#isVisible(airlight),
       light: through => {
         // Ground × transmittance + scattered × (1 − transmittance).
-        const ground = view.air.uniforms.groundAlbedo.mul(select(hitsGround, DOME_IRRADIANCE, 0))
+        const ground = view.air.uniforms.groundAlbedo.mul(hitsGround.select(DOME_IRRADIANCE, 0))
         return vec4(
           ground.sub(SCATTERED_RADIANCE).mul(through).add(SCATTERED_RADIANCE).mul(this.#radiance)
         )

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Color, PointLight, SpotLight, Vector3 } from 'three'
 import type { Camera, Light } from 'three'
 import { smoothstep } from 'three/tsl'
@@ -55,7 +54,7 @@ export class LampUniforms {
     const distance = way.length().max(1e-3).toConst() as Float
     const direction = way.div(distance).toConst() as Vec3
     const { w: end } = this.#light
-    const share = select(end.greaterThan(0), distance.div(end), 0).toConst() as Float
+    const share = end.greaterThan(0).select(distance.div(end), 0).toConst() as Float
     const window = share.pow4().oneMinus().clamp().toConst() as Float
     const decay = distance.pow(this.#place.w).max(0.01).reciprocal().mul(window.mul(window))
     const { x: inside } = this.#inside

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { DirectionalLight, Vector3 } from 'three'
 import type { Camera, Light, RenderTarget } from 'three'
 import { Fn, float, screenCoordinate, texture, vec2, vec3 } from 'three/tsl'
@@ -81,14 +80,14 @@ export class MeasuredLight {
     const texel = screenCoordinate.x.floor().toConst() as Float
     const here = Fn((): Vec3 => {
       const { x, y, z, w } = this.#distances
-      const near = select(texel.lessThan(0.5), x, y)
-      const far = select(texel.lessThan(2.5), z, w)
-      return vec3(0, 0, select(texel.lessThan(1.5), near, far).negate())
+      const near = texel.lessThan(0.5).select(x, y)
+      const far = texel.lessThan(2.5).select(z, w)
+      return vec3(0, 0, texel.lessThan(1.5).select(near, far).negate())
     })()
     const normal = Fn((): Vec3 => {
       const axis = texel.mul(0.5).floor().toConst() as Float
       const sign = texel.sub(axis.mul(2)).mul(-2).add(1).toConst() as Float
-      const along = (n: number): Float => select(axis.equal(n), sign, float(0))
+      const along = (n: number): Float => axis.equal(n).select(sign, float(0))
       return (this.#axes as unknown as Mat3).mul(vec3(along(0), along(1), along(2))).normalize()
     })()
     this.#surfaces = new WhiteSurfaces('Welkin.PrecipitationSkylight', vec3(0, 0, 0), normal)
@@ -118,7 +117,7 @@ export class MeasuredLight {
    */
   radianceAround(normal: Vec3): Vec3 {
     const faced = (n: number, component: Float): Vec3 => {
-      const back = select(component.lessThan(0), 1, 0)
+      const back = component.lessThan(0).select(1, 0)
       const u = float(back as Float)
         .add(2 * n + 0.5)
         .div(6)

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Vector3 } from 'three'
 import { matrix3, number, vector3, vector4 } from '../uniforms'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
@@ -90,8 +89,8 @@ export class PrecipitationUniforms {
     const isPast = (i: number) => index.greaterThan(i - 0.5)
     const pick = (values: readonly unknown[]): Vec4 => {
       const [a, b, c, d] = values as Vec4[]
-      const far = select(isPast(3), d, c)
-      return select(isPast(2), far, select(isPast(1), b, a)).toConst()
+      const far = isPast(3).select(d, c)
+      return isPast(2).select(far, isPast(1).select(b, a)).toConst()
     }
     const sizes = pick(this.#sizes)
     const box = pick(this.#boxes)

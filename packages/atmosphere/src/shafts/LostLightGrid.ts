@@ -1,11 +1,18 @@
-import { select } from '@welkin/geo'
 import type { RenderTarget } from 'three'
 import { Fn, If, float, log2, luminance, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import { loop, sampleLevel0 } from '../tsl-types'
-import type { Bool, Float, Int, Vec2, Vec3, Vec4 } from '../tsl-types'
+import {
+  loop,
+  sampleLevel0,
+  type Bool,
+  type Float,
+  type Int,
+  type Vec2,
+  type Vec3,
+  type Vec4
+} from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import { depthWeight, ROUGH, SIMILAR } from './tsl/depthWeight'
 import { depthOf, rarityAt, shownOf } from './tsl/rarity'
@@ -232,9 +239,9 @@ export class LostLightGrid {
       const apart = most.sub(least).toConst()
       const isEven = apart.y.lessThan(MIXED_OCTAVES).and(most.y.lessThan(MAX_MIXED))
       const isLit = most.z.max(least.z.negate()).lessThan(most.y.exp2().mul(LEAST_LOST))
-      const depth = result.w.add(select(isEven, 0, STEEP_DEPTH))
-      const marked = select(apart.x.lessThan(SAME_DEPTH), depth, APART_DEPTH)
-      result.w.assign(select(isLit, LIT_DEPTH, marked))
+      const depth = result.w.add(isEven.select(0, STEEP_DEPTH))
+      const marked = apart.x.lessThan(SAME_DEPTH).select(depth, APART_DEPTH)
+      result.w.assign(isLit.select(LIT_DEPTH, marked))
     })
     return result
   }
@@ -303,7 +310,7 @@ export class LostLightGrid {
       const isSteep = mean.w.lessThan(STEEP_LIMIT)
       // A grid that is not blended mixes places of samples here: as the sampler does where light is steep, else by a quarter each.
       const first = (
-        this.isBlended ? corner.add(0.5) : select(isSteep, place, corner.add(0.5))
+        this.isBlended ? corner.add(0.5) : isSteep.select(place, corner.add(0.5))
       ).toConst() as Vec2
       // Light, and depth.
       const sums = vec4(0).toVar()
@@ -327,7 +334,7 @@ export class LostLightGrid {
         .sub(own)
         .add(2 * SAME_DEPTH)
         .toConst()
-      const most = select(farther.lessThan(SAME_DEPTH), sums.w.add(farther.max(0)), LIT_DEPTH)
+      const most = farther.lessThan(SAME_DEPTH).select(sums.w.add(farther.max(0)), LIT_DEPTH)
       const depth = own.min(most).toConst() as Float
       lost.assign(partedLight(lit(this.#distanceAt(depth, least))).mul(sums.rgb))
       if (shown) lost.assign(lost.min(shown.mul(sums.rgb.max(0))))

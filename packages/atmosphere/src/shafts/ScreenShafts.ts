@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Vector2, type OrthographicCamera } from 'three'
 import { Fn, If, bool, float, mix, screenUV, uv, vec3 } from 'three/tsl'
 import type { Node, NodeFrame, Renderer } from 'three/webgpu'
@@ -196,7 +195,7 @@ export class ScreenShafts implements ScreenShadows {
   #rarityOf({ distance, nearness }: RayEnd, least: Float): Float {
     // `distanceOf` has no other ray end there.
     const isGround = distance.equal(SKY_DISTANCE) as Bool
-    return this.grid.rarityTo(nearness, least).mul(select(isGround, GROUND_RARITY, 1))
+    return this.grid.rarityTo(nearness, least).mul(isGround.select(GROUND_RARITY, 1))
   }
 
   /** Light that the ray of a pixel of the grid loses. */
@@ -217,8 +216,8 @@ export class ScreenShafts implements ScreenShadows {
       const before = passes.oneMinus().add(behind).toConst() as Float
       seen = {
         ...seen,
-        distance: select(behind.greaterThan(MIN_TRANSMITTANCE), distance, nearest).toConst(),
-        seenFrom: from => select(from.lessThan(nearest), before, behind)
+        distance: behind.greaterThan(MIN_TRANSMITTANCE).select(distance, nearest).toConst(),
+        seenFrom: from => from.lessThan(nearest).select(before, behind)
       }
     }
     const lost = lostLight(view, shadowedAir, seen, steps, staggered(pixel))
@@ -241,8 +240,8 @@ export class ScreenShafts implements ScreenShadows {
     const inverse = square.inverseSqrt().toConst() as Float
     const cosView = offset.dot(view.up).mul(inverse).toConst() as Float
     const beyond = distanceOf({ hitsGround: cosView.lessThan(view.viewpoint.cosHorizon) })
-    const distance = select(isSky, beyond, square.mul(inverse)).toConst() as Float
-    const nearness = select(isSky, 0, inverse).toConst() as Float
+    const distance = isSky.select(beyond, square.mul(inverse)).toConst() as Float
+    const nearness = isSky.select(0, inverse).toConst() as Float
     return { offset, inverse, nearness, cosView, distance }
   }
 

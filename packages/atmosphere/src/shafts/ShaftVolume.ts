@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { RGFormat, UnsignedByteType, Vector2 } from 'three'
 import type { Camera } from 'three'
 import { Fn, If, float, getViewPosition, int, screenUV, texture, uniform, vec4 } from 'three/tsl'
@@ -138,7 +137,7 @@ export class ShaftVolume {
       const { tile: slice, place } = this.#slices.texel()
       const [from, next] = [slice, slice.add(1)].map(number => this.#distanceTo(number))
       const isLast = slice.greaterThan(SLICES - 1.5)
-      const part: Slice = { from, to: select(isLast, FAR, next).toConst() }
+      const part: Slice = { from, to: isLast.select(FAR, next).toConst() }
       // Aside by a quarter of a step, so that four rays have edges at four places. Without: edges displaced by 0.29°.
       const aside = place.yx.mod(2).sub(0.5).mul(0.5)
       const ray = this.#rayAt(view, place.sub(0.5).add(aside).div(this.#size))
@@ -171,7 +170,10 @@ export class ShaftVolume {
     const between = place.add(1).toConst()
     const sum = vec4(0).toVar()
     If(tile.lessThan(SLICE_TILES - 0.5), () => {
-      const first = select(tile.greaterThan(SLICES - 0.5), tile, 0).toConst()
+      const first = tile
+        .greaterThan(SLICES - 0.5)
+        .select(tile, 0)
+        .toConst()
       loop('slice', int(tile.sub(first)).add(1), index => {
         const light = this.#slices.read(this.#sliceLight, first.add(float(index)), between)
         sum.addAssign(light)
@@ -214,7 +216,7 @@ export class ShaftVolume {
     const centre = this.#centre
     const pair = slice.mul(0.5).floor().toConst() as Float
     const both = this.#sumAt(pair.add(SLICE_TILES), centre)
-    const edges = select(slice.sub(pair.mul(2)).greaterThan(0.5), both.zw, both.xy).toConst()
+    const edges = slice.sub(pair.mul(2)).greaterThan(0.5).select(both.zw, both.xy).toConst()
     const part = inSlice.sub(edges.x).div(edges.y.sub(edges.x).max(1e-3)).clamp().toConst()
     const after = this.#sumAt(slice, centre)
     const before = vec4(0).toVar()

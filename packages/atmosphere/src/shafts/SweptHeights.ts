@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Matrix3, Vector3, type Matrix4, type RenderTarget, type Texture } from 'three'
 import { Fn, texture, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
@@ -106,7 +105,7 @@ export class SweptHeights {
       const next = at.add(this.#step).toConst() as Vec2
       const cast = (sampleLevel0(source, next).r as Float).sub(this.#fall)
       const { r: here, g: ground } = sampleLevel0(source, at).toConst() as unknown as Vec4
-      const higher = select(isInField(next).greaterThan(0.5), here.max(cast), here)
+      const higher = isInField(next).greaterThan(0.5).select(here.max(cast), here)
       return vec4(higher.clamp(-MAX_HEIGHT, MAX_HEIGHT), ground, 0, 0)
     })()
   }

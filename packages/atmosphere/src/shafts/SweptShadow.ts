@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Matrix4, type Camera, type Vector3 } from 'three'
 import { texture } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
@@ -72,7 +71,7 @@ export class SweptShadow {
       .div(dark.abs().mul(HALF_STEP).add(this.#blur))
       .add(isSurface ? 2 : 1)
       .clamp()
-    return select(isInField(place.xy).lessThan(0.5), 1, lit).toConst()
+    return isInField(place.xy).lessThan(0.5).select(1, lit).toConst()
   }
 
   /** Gives the maps back. */

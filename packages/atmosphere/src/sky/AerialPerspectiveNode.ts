@@ -1,6 +1,5 @@
-import { select } from '@welkin/geo'
 import type { Camera, OrthographicCamera } from 'three'
-import { Fn, If, float, isBackgroundDepth, uv, vec3, vec4 } from 'three/tsl'
+import { Fn, If, float, isBackgroundDepth, select, uv, vec3, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder, NodeFrame, PassNode } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import {
@@ -134,7 +133,7 @@ export class AerialPerspectiveNode extends PostEffectNode {
       const shafts = this.#screenShafts
       const drawnAt = shafts.length > 0 ? position(depth).toConst() : null
       const lost = shafts
-        .flatMap(each => each.lostAt(select(isSky, ray, drawnAt).toConst(), isSky) ?? [])
+        .flatMap(each => each.lostAt(isSky.select(ray, drawnAt).toConst(), isSky) ?? [])
         .reduce<Vec3 | undefined>((sum, more) => sum?.add(more) ?? more, undefined)
       If(ifSeen(isSky.not()), () => {
         const air = aerialPerspectiveTo(this.view, drawnAt ?? position(depth), this.layers, lost)

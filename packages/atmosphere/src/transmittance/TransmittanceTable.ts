@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Fn, float, uv, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { AtmosphereUniforms } from '../air/AtmosphereUniforms'
@@ -65,7 +64,7 @@ export class TransmittanceTable {
         for (const part of DISC) {
           const cosPart = cosView.add(sinView.mul(sunAngularRadius).mul(part.height)).min(1)
           const depth = depthToTop(air, altitude, cosPart.max(cosHorizon).toConst())
-          const visible = select(cosPart.greaterThanEqual(cosHorizon), part.area, 0).toConst()
+          const visible = cosPart.greaterThanEqual(cosHorizon).select(part.area, 0).toConst()
           // Relative to the least, so that thick air does not underflow.
           const lower = least.min(depth).toConst()
           light.assign(light.mul(lower.sub(least).exp()).add(lower.sub(depth).exp().mul(visible)))

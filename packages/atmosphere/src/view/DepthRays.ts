@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import type { Camera, Matrix4, OrthographicCamera } from 'three'
 import {
   float,
@@ -47,7 +46,7 @@ export class DepthRays {
     // Both, as nodes that draw air compute them: compilers take them for the same.
     const [ahead, drawn] = [float(0.5), depth].map(each => this.position(renderer, at, each))
     const ray = isOrthographicCamera ? (vec3(0, 0, -1) as unknown as Vec3) : ahead
-    return { position: select(isSky, ray, drawn).toConst(), isSky }
+    return { position: isSky.select(ray, drawn).toConst(), isSky }
   }
 
   /** Position of a depth at a place of the picture, in view space [world units]. */

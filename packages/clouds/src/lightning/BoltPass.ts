@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { aerialPerspectiveTo, tableTarget, type AtmosphereView } from '@welkin/atmosphere'
 import {
   Box2,
@@ -18,6 +17,7 @@ import {
 } from 'three'
 import { Fn, Discard, If, attribute, screenUV, texture, varying, vec2, vec3, vec4 } from 'three/tsl'
 import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
+import { select } from '../select'
 import type { CloudsNode } from '../march/CloudsNode'
 import { isDrawnBefore } from '../march/tsl/viewRay'
 import type { Float, LevelTexture, Mat3, Mat4, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'

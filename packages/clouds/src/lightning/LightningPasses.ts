@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import {
   aerialPerspectiveTo,
   FragmentPass,
@@ -8,6 +7,7 @@ import {
 import { Vector3, Vector4 } from 'three'
 import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
+import { select } from '../select'
 import type { CloudsNode } from '../march/CloudsNode'
 import { marchedPixel } from '../march/tsl/marchedPixel'
 import { CORNERS } from '../temporal/tsl/cells'

@@ -1,5 +1,5 @@
 import { attribute, cos, fract, mix, vec3 } from 'three/tsl'
-import { fail, select } from '@welkin/geo'
+import { fail } from '@welkin/geo'
 import type { Float, Vec3, Vec4 } from '../tsl-types'
 
 /** Questions about a terrain that colours answer. */
@@ -34,7 +34,7 @@ const views: Record<TerrainView, () => Vec3> = {
   pages: () => {
     const { x: own, y: parent, w: fade } = instance('tilePage')
     const isAlone = own.sub(parent).abs().greaterThan(0.5).or(fade.lessThan(0.5))
-    return select(isAlone, mix(color(GREEN), color(YELLOW), fade), color(RED))
+    return isAlone.select(mix(color(GREEN), color(YELLOW), fade), color(RED))
   }
 }
 

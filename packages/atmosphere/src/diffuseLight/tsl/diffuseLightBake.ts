@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Discard, Fn, If, float, int, mix, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import { DIFFUSE_LAYOUT, DIFFUSE_SIZE, RADIANCE_SCALE } from '../../tables/tableSizes'
@@ -51,12 +50,13 @@ export function bakeRays(
 
     const { bottomRadius, thickness } = uniforms
     const discriminant = groundDiscriminant(altitude, towards.cosView, bottomRadius)
-    const length = select(
-      towards.up,
-      distanceToTop(altitude, towards.cosView, bottomRadius, thickness),
-      distanceToGround(altitude, towards.cosView, discriminant, bottomRadius)
-    ).toConst() as Float
-    const end = select(towards.up, thickness, float(0))
+    const length = towards.up
+      .select(
+        distanceToTop(altitude, towards.cosView, bottomRadius, thickness),
+        distanceToGround(altitude, towards.cosView, discriminant, bottomRadius)
+      )
+      .toConst() as Float
+    const end = towards.up.select(thickness, float(0))
     const scattered = scattering(air, ray, length, end.sub(altitude), steps, lights)
     const radiance = scatteredRadiance(uniforms, scattered, towards.cosViewLight)
       .mul(RADIANCE_SCALE)
@@ -139,7 +139,7 @@ export function reduceRays(
         mu.negate().max(0)
       ]
       const weight = weights.reduce(
-        (chosen, value, i) => mix(chosen, value, select(tile.equal(i), 1, 0)) as never
+        (chosen, value, i) => mix(chosen, value, tile.equal(i).select(1, 0)) as never
       )
       const source = vec2(float(ray).add(0.5).div(width), rayRow)
       sum.addAssign(sampleLevel0(rays, source).mul(weight).mul(solidAngle))

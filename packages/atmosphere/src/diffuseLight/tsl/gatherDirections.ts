@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { float } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import type { Air } from '../../scattering/tsl/ray'
@@ -53,16 +52,16 @@ export function direction(air: Air, altitude: Float, cosLight: Float, number: In
   const { bottomRadius } = air.uniforms
   const elevationIndex = number.div(at.azimuths).toConst()
   const up = elevationIndex.lessThan(at.elevations).toConst()
-  const ruleIndex = select(up, elevationIndex, elevationIndex.sub(at.elevations)).add(at.offset)
+  const ruleIndex = up.select(elevationIndex, elevationIndex.sub(at.elevations)).add(at.offset)
   const entry = at.rule.element(ruleIndex).toConst()
   const azimuthIndex = number.sub(elevationIndex.mul(at.azimuths))
   const azimuth = float(azimuthIndex).add(0.5).div(float(at.azimuths)).mul(Math.PI)
 
   const dip = bottomRadius.div(bottomRadius.add(altitude)).acos().toConst()
-  const span = select(up, dip.add(Math.PI / 2), float(Math.PI / 2).sub(dip)).toConst()
+  const span = up.select(dip.add(Math.PI / 2), float(Math.PI / 2).sub(dip)).toConst()
   const x = entry.x.toConst()
   const fromHorizon = span.mul(x.mul(EVEN_SPACING).add(x.mul(x).mul(1 - EVEN_SPACING)))
-  const elevation = select(up, fromHorizon, fromHorizon.negate()).sub(dip).toConst()
+  const elevation = up.select(fromHorizon, fromHorizon.negate()).sub(dip).toConst()
   const cosElevation = elevation.cos().toConst()
   const spacing = span.mul(x.mul(2 * (1 - EVEN_SPACING)).add(EVEN_SPACING)).mul(entry.y)
   const solidAngle = spacing

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import type { Table } from '../../tables/TableAtlas'
 import { RADIANCE_SCALE } from '../../tables/tableSizes'
@@ -44,7 +43,7 @@ export function skyIrradiance(
   const m00 = moments.m00.mul(rest)
   return applyMoments({ ...moments, m00 }, basis, COSINE_1, COSINE_2)
     .mul(Math.PI)
-    .add(read(6, select(cosNormal.lessThan(0), 1, 0)).mul(square))
+    .add(read(6, cosNormal.lessThan(0).select(1, 0)).mul(square))
     .max(0)
     .div(RADIANCE_SCALE)
 }

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Fn, If, float, floor, int, ivec2, luminance, textureLoad, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import { loop, type Float, type Int, type Vec2, type Vec3, type Vec4 } from '../../tsl-types'
@@ -37,7 +36,7 @@ export const logLuminance = (picture: TextureNode, size: Vec2, cell: Vec2, exten
         })
       })
       const mean = sum.x.div(sum.y.max(1))
-      return select(sum.y.greaterThan(0), mean, float(darkest))
+      return sum.y.greaterThan(0).select(mean, float(darkest))
     })
     return vec4(...(quadrants as [Float, Float, Float, Float]))
   })()

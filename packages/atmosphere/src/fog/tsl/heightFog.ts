@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import type { Bool, Float } from '../../tsl-types'
 import { erfcx } from './erfcx'
 
@@ -82,23 +81,20 @@ export function fogDepth(
         .sqrt()
     )
     .mul(2)
-  const between = select(
-    passesNearest,
+  const between = passesNearest.select(
     chord.sub(outward).sub(outwardThere),
-    select(sinks, outwardThere.sub(outward), outward.sub(outwardThere))
+    sinks.select(outwardThere.sub(outward), outward.sub(outwardThere))
   )
   const least = here.min(there).mul(distance)
-  const most = select(passesNearest, lowest, here.max(there)).mul(distance)
+  const most = passesNearest.select(lowest, here.max(there)).mul(distance)
   const depth = between.mul(falloff).clamp(least, most).mul(density)
-  const sinking = select(
-    passesNearest,
-    drop.div(along.min(-1)),
-    gain.div(distance.max(1e-3))
-  ).negate()
+  const sinking = passesNearest
+    .select(drop.div(along.min(-1)), gain.div(distance.max(1e-3)))
+    .negate()
   return {
     depth: depth.toConst(),
     start: height.div(falloff).toConst(),
-    fall: select(sinks, sinking, cosView.negate()).div(falloff).toConst()
+    fall: sinks.select(sinking, cosView.negate()).div(falloff).toConst()
   }
 }
 

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import type { Float } from '../../tsl-types'
 
 /** Cosines between the ground's normal, the sun and the camera. */
@@ -25,7 +24,7 @@ export function orenNayar(angles: GroundAngles, roughness: Float): Float {
   const uneven = variance.mul(0.45).div(variance.add(0.09))
   const cosLight = angles.cosLight.max(0).toConst()
   const along = angles.cosLightViewer.sub(cosLight.mul(angles.cosViewer)).toConst()
-  const longest = select(along.greaterThan(0), cosLight.max(angles.cosViewer), 1).max(1e-3)
+  const longest = along.greaterThan(0).select(cosLight.max(angles.cosViewer), 1).max(1e-3)
   return along.div(longest).mul(uneven).add(even).max(0)
 }
 
@@ -96,7 +95,7 @@ export function sunGlint(angles: GroundAngles, variance: Float): Float {
     .add(1)
     .mul(cosViewer)
   const glint = waterFresnel(length.mul(0.5)).mul(distribution).div(visible.mul(4))
-  return select(cosLight.greaterThan(0), glint, 0)
+  return cosLight.greaterThan(0).select(glint, 0)
 }
 
 /**

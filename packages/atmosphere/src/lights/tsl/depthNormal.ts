@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { cross, vec2 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { OrthographicCamera } from 'three'
@@ -37,13 +36,12 @@ export function depthNormal(renderer: Renderer, rays: DepthRays, at: Vec2, size:
         .sub(even(here))
         .abs()
       const isInside = two.sub(two.clamp()).length().equal(0)
-      return { next, error: select(isInside, bend, OUTSIDE).toConst() }
+      return { next, error: isInside.select(bend, OUTSIDE).toConst() }
     })
-    return select(
-      before.error.lessThan(after.error),
-      here.sub(before.next),
-      after.next.sub(here)
-    ).toConst()
+    return before.error
+      .lessThan(after.error)
+      .select(here.sub(before.next), after.next.sub(here))
+      .toConst()
   }
   const normal = cross(slope(vec2(1, 0)), slope(vec2(0, -1))).toConst() as Vec3
   return normal.div(normal.length().max(1e-30)).toConst()

@@ -1,9 +1,8 @@
-import { select } from '@welkin/geo'
 import { float, vec2, vec3 } from 'three/tsl'
 import type { Float, Vec2, Vec3 } from '../../tsl-types'
 
 const signs = (of: Vec2): Vec2 =>
-  vec2(select(of.x.lessThan(0), -1, 1), select(of.y.lessThan(0), -1, 1))
+  vec2(of.x.lessThan(0).select(-1, 1), of.y.lessThan(0).select(-1, 1))
 
 const fold = (point: Vec2): Vec2 => vec2(point.y, point.x).abs().oneMinus().mul(signs(point))
 
@@ -19,13 +18,13 @@ const fold = (point: Vec2): Vec2 => vec2(point.y, point.x).abs().oneMinus().mul(
 export function octahedralPoint(direction: Vec3): Vec2 {
   const size = direction.abs().toConst()
   const point = direction.xy.div(size.x.add(size.y).add(size.z)).toConst() as Vec2
-  return select(direction.z.lessThan(0), fold(point), point).toConst()
+  return direction.z.lessThan(0).select(fold(point), point).toConst()
 }
 
 /** The inverse of {@link octahedralPoint}, of unit length. */
 export function octahedralDirection(point: Vec2): Vec3 {
   const size = point.abs().toConst()
   const z = float(1).sub(size.x).sub(size.y).toConst() as Float
-  const xy = select(z.lessThan(0), fold(point), point)
+  const xy = z.lessThan(0).select(fold(point), point)
   return vec3(xy, z).normalize().toConst()
 }

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Vector4 } from 'three'
 import { Fn, If, float, mix, smoothstep, vec2, vec3, vec4 } from 'three/tsl'
 import {
@@ -154,7 +153,7 @@ function craterGradient(direction: Vec3, maria: Float): { gradient: Vec3; fresh:
       const isNear = distance.mul(frequency).lessThan(0.6)
       If(isNear.and(height.sub(frequency).abs().lessThan(0.5)), () => {
         const random = cellRandom(corner.add(40.5)).toConst() as Vec3
-        const exists = select(random.x.greaterThan(maria.mul(0.45).add(0.4)), 1, 0).toConst()
+        const exists = random.x.greaterThan(maria.mul(0.45).add(0.4)).select(1, 0).toConst()
         const radius = random.y.mul(random.y).mul(0.25).add(0.12).div(frequency)
         const part = distance.div(radius).toConst() as Float
         gradient.addAssign(away.div(distance).mul(craterSlope(part).mul(exists).mul(0.8)))

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { acos, vec2 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import { HALF_TEXELS } from '../cpu/phaseRow'
@@ -18,6 +17,6 @@ export function samplePhase(table: TextureNode, cosScatter: Float, v: Float | nu
     .mul((HALF_TEXELS - 1) / (2 * HALF_TEXELS))
     .add(0.25 / HALF_TEXELS)
     .toConst() as Float
-  const u = select(cosScatter.lessThan(0), place.oneMinus(), place)
+  const u = cosScatter.lessThan(0).select(place.oneMinus(), place)
   return sampleLevel0(table, vec2(u as Float, v))
 }

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Fn, atan, float, screenUV, sin, smoothstep, varyingProperty, vec2, vec4 } from 'three/tsl'
 import type { Float, Vec2, Vec4 } from '../../tsl-types'
 import type { DepthRays } from '../../view/DepthRays'
@@ -59,7 +58,7 @@ export function particleFragment(
     if (rays !== null) {
       const { position, isSky } = rays.at(renderer, screenUV)
       const inFront = shape.w.sub(position.z).div(unit.mul(SOFTNESS)).clamp()
-      opacity.mulAssign(select(isSky, float(1), inFront))
+      opacity.mulAssign(isSky.select(float(1), inFront))
     }
     return vec4(light.rgb.mul(opacity), opacity)
   })()

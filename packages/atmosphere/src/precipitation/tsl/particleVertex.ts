@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import {
   Fn,
   If,
@@ -157,7 +156,7 @@ export function particleVertex(
         const seenLength = across.length().toConst() as Float
         const { inner, outer, opacity } = streakShape(width, seenLength, blur, kind.isSoft)
         const sharpness = kind.isSoft ? width.div(width.add(blur)) : inner.div(outer)
-        const axis = select(seenLength.greaterThan(length.mul(1e-3)), across, vec3(0, 1e-6, 0))
+        const axis = seenLength.greaterThan(length.mul(1e-3)).select(across, vec3(0, 1e-6, 0))
         const along = axis
           .add(vec3(0, 1e-9, 0))
           .normalize()

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { exp, float, fwidth, hash, sin, smoothstep, vec2 } from 'three/tsl'
 import type { Float, Vec2 } from '../../tsl-types'
 
@@ -72,7 +71,7 @@ export function rippleSlope(place: Vec2, time: Float, ringRate: Float): Vec2 {
     const wave = sin(behind.mul((2 * Math.PI) / WAVELENGTH))
       .mul(packet)
       .mul(fade)
-    const isThere = select(random(0).lessThan(chance), float(STEEPNESS), float(0))
+    const isThere = random(0).lessThan(chance).select(float(STEEPNESS), float(0))
     slope = slope.add(offset.div(distance.max(1e-4)).mul(wave).mul(isThere))
   }
   return slope

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { float } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import { loop, type Float, type Int } from '../../tsl-types'
@@ -13,10 +12,7 @@ const STEP_GROWTH = 0.3
  */
 export function stepExponent({ homogeneousHeight }: AtmosphereUniforms, rise: Float): Float {
   const wanted = rise.div(homogeneousHeight).mul(STEP_GROWTH).clamp(-4, 4)
-  return wanted
-    .abs()
-    .max(0.05)
-    .mul(select(wanted.lessThan(0), -1, 1))
+  return wanted.abs().max(0.05).mul(wanted.lessThan(0).select(-1, 1))
 }
 
 /**

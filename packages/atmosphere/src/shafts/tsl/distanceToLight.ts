@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import type { Float } from '../../tsl-types'
 import type { Viewpoint } from '../../view/tsl/viewpoint'
 
@@ -14,5 +13,5 @@ export function distanceToLight(
   const outward = radius.mul(cosView.sub(cosLight.mul(cosViewLight))).toConst() as Float
   const root = outward.mul(outward).add(cosViewLight.mul(cosViewLight).oneMinus().mul(depth))
   const leaves = depth.div(outward.add(root.max(0).sqrt()).max(1e-3))
-  return select(cosLight.lessThan(0).and(depth.greaterThan(0)), leaves, 0).toConst()
+  return cosLight.lessThan(0).and(depth.greaterThan(0)).select(leaves, 0).toConst()
 }

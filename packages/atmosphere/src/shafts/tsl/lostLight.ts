@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { If, float, int, vec2, vec4 } from 'three/tsl'
 import { miePhase, rayleighPhase } from '../../air/tsl/phase'
 import type { Air } from '../../scattering/tsl/ray'
@@ -90,7 +89,7 @@ export function lostLight(
     const steps = warpedSteps(air.uniforms, ray, length)
     const isSky = distance.greaterThanEqual(SKY_DISTANCE)
     const denser = shadowedAir.denser()
-    const airAt = litRay(view, ray, limits, cosView, denser && select(isSky, 1, denser))
+    const airAt = litRay(view, ray, limits, cosView, denser && isSky.select(1, denser))
     const { darkAt, missingAt } = start
       ? shadowsBeside(view, shadowedAir, shaftRay, jitter)
       : shadowsAlong(view, shadowedAir, shaftRay, () => polar, jitter)
@@ -141,7 +140,7 @@ export function lostLight(
       at: airAt,
       cosViewLight,
       samples: places,
-      jitter: select(jitter.lessThan(0.5), 0.25, 0.75) as Float,
+      jitter: jitter.lessThan(0.5).select(0.25, 0.75) as Float,
       missingAt: (inAir: Float, from: Float, width: Float) =>
         past(missingAt(fromEye(inAir)), from, width)
     }

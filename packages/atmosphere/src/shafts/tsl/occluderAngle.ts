@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import type { DepthTexture, Matrix4, Vector2, Vector4 } from 'three'
 import { Fn, If, float, step, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode, UniformNode } from 'three/webgpu'
@@ -77,11 +76,9 @@ function mixedDepth(depth: TextureNode, size: Vec2, at: Vec2, { isReversed }: De
   const { x, y, z, w } = four
   const farther = isReversed ? 'min' : 'max'
   const farthest = x[farther](y)[farther](z)[farther](w)
-  return select(
-    isEmpty(farthest, { isReversed, isCompared: false }),
-    among(step(0.5, part)),
-    among(part)
-  ).toConst()
+  return isEmpty(farthest, { isReversed, isCompared: false })
+    .select(among(step(0.5, part)), among(part))
+    .toConst()
 }
 
 /**
@@ -136,6 +133,6 @@ function seekOccluder(
       ? comparedDepth(depth, at, storage)
       : mixedDepth(depth, size, at, storage)
     const position = stored.sub(place.z).mul(metersPerDepth)
-    then(select(isEmpty(stored, storage), NOTHING, position).toConst())
+    then(isEmpty(stored, storage).select(NOTHING, position).toConst())
   })
 }

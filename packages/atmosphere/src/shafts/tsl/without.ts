@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { If } from 'three/tsl'
 import type { MediumSegment } from '../../skyVolume/tsl/skyVolume'
 import type { Float, Vec4 } from '../../tsl-types'
@@ -22,4 +21,4 @@ export function withoutLost(
 
 /** Distance to what a ray meets: to the sky, or the planet, where nothing was drawn [m]. */
 export const distanceOf = ({ distance, hitsGround }: Partial<LayerRay>): Float =>
-  distance ?? select(hitsGround!, SKY_DISTANCE, FAR).toConst()
+  distance ?? hitsGround!.select(SKY_DISTANCE, FAR).toConst()

@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Vector2 } from 'three'
 import { If, float, uniform, vec3 } from 'three/tsl'
 import type { AtmosphereParameters } from '../../parameters/AtmosphereParameters'
@@ -112,7 +111,7 @@ export function profileAt(
 export function absorberAbove(inLayer: Float): Float {
   const rest = inLayer.abs().oneMinus().max(0).toConst() as Float
   const half = rest.mul(rest).mul(0.5).toConst() as Float
-  return select(inLayer.lessThan(0), half.oneMinus(), half)
+  return inLayer.lessThan(0).select(half.oneMinus(), half)
 }
 
 /**

@@ -1,9 +1,9 @@
-import { select } from '@welkin/geo'
 import { WebGLCoordinateSystem } from 'three'
 import {
   cameraFar,
   cameraNear,
   cameraProjectionMatrix,
+  select,
   vec4,
   viewZToLogarithmicDepth
 } from 'three/tsl'

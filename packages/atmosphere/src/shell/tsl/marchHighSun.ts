@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { If, vec3 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import { gaussLegendre, weightsTo } from '../../math/cpu/quadrature'
@@ -38,7 +37,7 @@ export function denseEnd(
   { bottomRadius, thickness, sunAngularRadius }: AtmosphereUniforms,
   { altitude, radius, radiusCosView, radiusCosSun, cosViewLight, hitsGround, length }: AirSegment
 ): DenseEnd {
-  const ceiling = select(hitsGround, 0, thickness).toConst() as Float
+  const ceiling = hitsGround.select(0, thickness).toConst() as Float
   const first = radiusCosSun.div(radius).toConst() as Float
   const along = cosViewLight.mul(length).add(radiusCosSun)
   const last = along.div(bottomRadius.add(ceiling)).toConst() as Float
@@ -48,10 +47,10 @@ export function denseEnd(
   const highest = altitude.max(ceiling).toConst()
   const dip = highest.mul(bottomRadius.mul(2).add(highest)).sqrt().div(bottomRadius.add(highest))
   return {
-    altitude: select(hitsGround, 0, altitude).toConst(),
-    radiusCosView: select(hitsGround, radiusCosView.add(length).negate(), radiusCosView).toConst(),
-    cosLight: select(hitsGround, last, first).toConst(),
-    cosLightAbove: select(hitsGround, first, last).toConst(),
+    altitude: hitsGround.select(0, altitude).toConst(),
+    radiusCosView: hitsGround.select(radiusCosView.add(length).negate(), radiusCosView).toConst(),
+    cosLight: hitsGround.select(last, first).toConst(),
+    cosLightAbove: hitsGround.select(first, last).toConst(),
     isSunny: least.greaterThan(HIGH_SUN).and(isSteady).toConst(),
     isDark: first.max(last).add(dip).lessThan(sunAngularRadius.mul(-2)).toConst()
   }
@@ -77,7 +76,7 @@ export function marchHighSun(
   const half = perRadius.mul(0.5).toConst() as Float
   const u0 = dense.altitude.mul(half).mul(dense.altitude).add(dense.altitude).toConst() as Float
   const u1 = dense.radiusCosView.mul(perRadius).toConst() as Float
-  const rise = select(hitsGround, altitude, thickness.sub(altitude)).max(0)
+  const rise = hitsGround.select(altitude, thickness.sub(altitude)).max(0)
   const exponent = shellStepExponent(constants, rise).toConst() as Float
   // κ/(e^κ − 1)
   const slope = exponent
@@ -107,8 +106,8 @@ export function marchHighSun(
   const scaled = length.mul(COLUMN_UNIT).toConst() as Float
   sums.columns.assign(weighted(densities, weights).mul(scaled))
   If(dense.isDark.not(), () => {
-    const sign = select(hitsGround, scaled.negate(), scaled).toConst()
-    const base = select(hitsGround, sums.columns, vec3(0)).toConst()
+    const sign = hitsGround.select(scaled.negate(), scaled).toConst()
+    const base = hitsGround.select(sums.columns, vec3(0)).toConst()
     points.forEach(({ density, inLayer: y, fraction }, i) => {
       const above = vec3(density.xy, absorberAbove(y))
       const toSun = change.mul(fraction).add(1).mul(lengths).mul(above)

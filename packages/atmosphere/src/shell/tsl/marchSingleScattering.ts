@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { If, int, vec3 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import { extinction } from '../../air/tsl/medium'
@@ -28,11 +27,9 @@ function visiblePart(
   const columns = vec3(constants.horizon.mul(density.xy), 0) as Vec3
   const depth = extinction(uniforms, columns).toConst() as Vec4
   const isOpaque = depth.x.min(depth.y).min(depth.z.min(depth.w)).greaterThan(OPAQUE_DEPTH)
-  const length = select(
-    passesNearest.and(isOpaque),
-    segment.radiusCosView.negate().clamp(0, segment.length),
-    segment.length
-  )
+  const length = passesNearest
+    .and(isOpaque)
+    .select(segment.radiusCosView.negate().clamp(0, segment.length), segment.length)
   return { ...segment, length: length.toConst() }
 }
 
@@ -49,8 +46,8 @@ export function marchSingleScattering(
   const { altitude, radiusCosView, hitsGround } = segment
   const isShort = altitude.lessThan(uniforms.homogeneousHeight.mul(1.25))
   const passesNearest = hitsGround.not().and(radiusCosView.lessThan(0)).toConst() as Bool
-  const stepsToSpace = select(passesNearest, 4, 3)
-  const steps = int(select(hitsGround, select(isShort, 1, 3), stepsToSpace)).toConst()
+  const stepsToSpace = passesNearest.select(4, 3)
+  const steps = int(hitsGround.select(isShort.select(1, 3), stepsToSpace)).toConst()
   const visible = visiblePart(uniforms, constants, segment, passesNearest)
   const { nodes, weights } = gaussLegendre(3)
   marchFromLowest(

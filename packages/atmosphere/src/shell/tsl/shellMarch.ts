@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { float, vec4 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import { loop, type Bool, type Float, type Int, type Vec4 } from '../../tsl-types'
@@ -42,7 +41,7 @@ export function marchFromLowest(
   visit: (start: Float, end: Float) => void
 ): void {
   const lowest = radiusCosView.negate().clamp(0, length).toConst() as Float
-  const ceiling = select(hitsGround, 0, uniforms.thickness)
+  const ceiling = hitsGround.select(0, uniforms.thickness)
   const falling = exponentOf(altitude.sub(floor).max(0)).toConst()
   const rising = exponentOf(ceiling.sub(floor).max(0)).toConst()
   // Distance from the lowest point after a fraction y of the steps: (e^{κy} − 1)/(e^κ − 1) of the half.
@@ -56,15 +55,8 @@ export function marchFromLowest(
   loop('step', steps, step => {
     const passed = float(step).add(1).sub(before).toConst()
     const descends = passed.lessThanEqual(0).toConst() as Bool
-    const exponent = passed.mul(select(descends, perDescent.negate(), perAscent))
-    const end = lowest
-      .add(
-        exponent
-          .exp()
-          .sub(1)
-          .mul(select(descends, descent, ascent))
-      )
-      .toConst()
+    const exponent = passed.mul(descends.select(perDescent.negate(), perAscent))
+    const end = lowest.add(exponent.exp().sub(1).mul(descends.select(descent, ascent))).toConst()
     visit(start, end)
     start.assign(end)
   })

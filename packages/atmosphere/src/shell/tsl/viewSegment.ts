@@ -1,5 +1,5 @@
 import { If, dot } from 'three/tsl'
-import { offsetPoint, select } from '@welkin/geo'
+import { offsetPoint } from '@welkin/geo'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import type { AirRay } from '../../skyVolume/tsl/skyVolume'
 import type { Bool, Float, Mat3, Vec2, Vec3 } from '../../tsl-types'
@@ -111,7 +111,7 @@ function airChord(
   const top = bottomRadius.add(thickness).toConst() as Float
   const isOutside = height.greaterThan(thickness).toConst() as Bool
   const toTop = top.sub(impactRadius).mul(top.add(impactRadius)).max(0).sqrt().toConst()
-  const radiusCosView = select(isOutside, toTop.negate(), fromNearest).toConst() as Float
+  const radiusCosView = isOutside.select(toTop.negate(), fromNearest).toConst() as Float
   const altitude = height.min(thickness).toConst() as Float
   // t² + 2 r μ t + product = 0 on the ground, + gap less at the top.
   const product = altitude.mul(bottomRadius.mul(2).add(altitude)).toConst()
@@ -120,17 +120,17 @@ function airChord(
   const discriminant = square.sub(product).toConst()
   const descends = radiusCosView.lessThan(0)
   const hitsGround = discriminant.greaterThanEqual(0).and(descends).toConst() as Bool
-  const root = select(hitsGround, discriminant, square.add(gap).max(0)).sqrt().toConst() as Float
+  const root = hitsGround.select(discriminant, square.add(gap).max(0)).sqrt().toConst() as Float
   const end = root.sub(radiusCosView).max(1e-3).toConst()
   const misses = isOutside.and(impactRadius.greaterThanEqual(top).or(cosView.greaterThan(0)))
-  const length = select(misses, 0, select(hitsGround, product.div(end), end)).toConst() as Float
+  const length = misses.select(0, hitsGround.select(product.div(end), end)).toConst() as Float
   const passesNearest = hitsGround.not().and(descends).toConst() as Bool
-  const lowest = select(passesNearest, impactRadius.sub(bottomRadius).max(0), altitude)
+  const lowest = passesNearest.select(impactRadius.sub(bottomRadius).max(0), altitude)
   return {
     altitude,
-    radius: select(isOutside, top, radius).toConst(),
+    radius: isOutside.select(top, radius).toConst(),
     radiusCosView,
-    lowestAltitude: select(hitsGround, 0, lowest).toConst(),
+    lowestAltitude: hitsGround.select(0, lowest).toConst(),
     hitsGround,
     length,
     cosView,
@@ -138,7 +138,7 @@ function airChord(
     nearest,
     impactRadius,
     isOutside,
-    entry: select(isOutside, fromNearest.negate().sub(toTop).max(0), 0).toConst(),
+    entry: isOutside.select(fromNearest.negate().sub(toTop).max(0), 0).toConst(),
     halfChord: root
   }
 }
@@ -153,18 +153,14 @@ function middleDistance(
   const passesNearest = hitsGround.not().and(radiusCosView.lessThan(0))
   const isLow = lowestAltitude.lessThan(altitude.mul(GRAZING_FRACTION))
   const isGrazing = passesNearest.and(isOutside.or(isLow))
-  const partLength = select(
-    isGrazing,
-    radiusCosView.negate().min(length),
-    length
-  ).toConst() as Float
+  const partLength = isGrazing.select(radiusCosView.negate().min(length), length).toConst() as Float
   const middle = entry.add(partLength.mul(0.5)).toConst() as Float
   // Corners of a pixel may show ground that is nearer by more than the air is thick.
   const pixelRadius = entry.add(partLength).mul(pixel.x).add(pixel.y)
   const corner = impactRadius.sub(pixelRadius).max(0).toConst() as Float
   const cornerChord = bottomRadius.sub(corner).mul(bottomRadius.add(corner)).max(0).sqrt()
-  const nearer = cornerChord.sub(select(hitsGround, halfChord, 0)).max(0)
-  return select(isOutside, middle.sub(nearer).max(0), middle)
+  const nearer = cornerChord.sub(hitsGround.select(halfChord, 0)).max(0)
+  return isOutside.select(middle.sub(nearer).max(0), middle)
 }
 
 /** Part of the fragment's view ray that is in the air. */

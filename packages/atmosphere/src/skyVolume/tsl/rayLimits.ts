@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import type { Bool, Float } from '../../tsl-types'
 import type { Viewpoint } from '../../view/tsl/viewpoint'
 
@@ -28,7 +27,7 @@ export function rayLimits(viewpoint: Viewpoint, cosView: Float, forcedGround?: B
   const bottom = viewpoint.toHorizon.div(ground.max(0).sqrt().sub(radial).max(1e-3))
   return {
     start: start,
-    length: select(hitsGround, bottom, top).sub(start).max(0).toConst(),
+    length: hitsGround.select(bottom, top).sub(start).max(0).toConst(),
     hitsGround
   }
 }

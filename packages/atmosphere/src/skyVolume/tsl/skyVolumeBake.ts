@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Fn, If, float, int, uv, vec2, vec4 } from 'three/tsl'
 import type { TextureNode } from 'three/webgpu'
 import { outputs, type Outputs } from '../../tables/FragmentPass'
@@ -33,11 +32,10 @@ export function enterAir(air: Air, ray: Ray, limits: RayLimits): Ray {
   const { thickness } = air.uniforms
   const entry = pointAlong(air, ray, limits.start)
   return {
-    altitude: select(
-      limits.start.greaterThan(0),
-      thickness,
-      entry.altitude.min(thickness)
-    ).toConst(),
+    altitude: limits.start
+      .greaterThan(0)
+      .select(thickness, entry.altitude.min(thickness))
+      .toConst(),
     cosView: entry.cosView,
     cosLight: entry.cosLight,
     cosViewLight: ray.cosViewLight
@@ -69,7 +67,7 @@ export function bakeDepth(air: Air, viewpoint: Viewpoint): Vec4 {
     })
     const isLast = row.greaterThanEqual(DEPTH_DISTANCES)
     const mean = depth.div(start.max(1)).mul(EXTINCTION_SCALE)
-    return select(isLast, depth.negate().exp(), mean)
+    return isLast.select(depth.negate().exp(), mean)
   })()
 }
 
@@ -146,12 +144,12 @@ export function sumSegments(
       const y = tile.row.mul(ELEVATIONS).add(row)
       const at = vec2(x, y).add(0.5).mul(size).toConst() as Vec2
       const [left, right] = [molecular, aerosol].map(half => sampleLevel0(half, at))
-      sum.addAssign(select(across.lessThan(1), left, right))
+      sum.addAssign(across.lessThan(1).select(left, right))
     })
     const { cosView, hitsGround } = elevationCosine(viewpoint, row, ELEVATIONS)
     const limits = rayLimits(viewpoint, cosView, hitsGround)
     const distance = sliceDistance(viewpoint, limits, slice.add(1).div(DISTANCES))
     const part = float(LIGHT_LENGTH).div(distance.max(1e-3))
-    return sum.mul(select(slice.lessThan(SKY_TILE), part, 1)).min(MOST_HALF)
+    return sum.mul(slice.lessThan(SKY_TILE).select(part, 1)).min(MOST_HALF)
   })()
 }

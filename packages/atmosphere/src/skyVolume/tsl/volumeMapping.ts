@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { If, mix } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import { VOLUME_SIZE } from '../../tables/tableSizes'
@@ -26,14 +25,14 @@ export function elevationPosition(
 ): Float {
   const across = cosView.mul(viewpoint.sinHorizon).sub(sinView.mul(viewpoint.cosHorizon)).abs()
   const along = sinView.mul(viewpoint.sinHorizon).add(cosView.mul(viewpoint.cosHorizon))
-  const scale = select(hitsGround, viewpoint.belowScale, viewpoint.aboveScale)
+  const scale = hitsGround.select(viewpoint.belowScale, viewpoint.aboveScale)
   return across.div(along.add(1).max(1e-6)).mul(scale).clamp().sqrt()
 }
 
 /** Texel of a position among so many elevations, the lower half of them below the horizon. */
 export function elevationTexel(position: Float, hitsGround: Bool, count: number): Float {
   const half = count / 2
-  return position.mul(half - 1).add(select(hitsGround, 0.5, half + 0.5))
+  return position.mul(half - 1).add(hitsGround.select(0.5, half + 0.5))
 }
 
 /** Cosine of the zenith angle of an elevation, counted in whole texels. */
@@ -46,13 +45,13 @@ export function elevationCosine(
   const hitsGround = texel.lessThan(half).toConst()
   const position = texel
     .floor()
-    .sub(select(hitsGround, 0, half))
+    .sub(hitsGround.select(0, half))
     .div(half - 1)
     .toConst()
-  const scale = select(hitsGround, viewpoint.belowScale, viewpoint.aboveScale)
+  const scale = hitsGround.select(viewpoint.belowScale, viewpoint.aboveScale)
   const tangent = position.mul(position).div(scale).toConst()
   const square = tangent.mul(tangent).toConst()
-  const double = tangent.mul(select(hitsGround, -2, 2))
+  const double = tangent.mul(hitsGround.select(-2, 2))
   const cosView = viewpoint.cosHorizon
     .mul(square.oneMinus())
     .add(viewpoint.sinHorizon.mul(double))
@@ -82,10 +81,10 @@ function lightAtLowestPoint(
   const { bottomRadius } = uniforms
   const nearest = viewpoint.radius.mul(sinView).toConst()
   const square = bottomRadius.sub(nearest).mul(bottomRadius.add(nearest)).max(0)
-  const chord = select(hitsGround, square.sqrt(), 0).toConst()
+  const chord = hitsGround.select(square.sqrt(), 0).toConst()
   const across = nearest.mul(cosView).add(chord.mul(sinView))
   const along = nearest.mul(sinView).sub(chord.mul(cosView))
-  const inverse = select(hitsGround, bottomRadius, nearest.max(1)).reciprocal().toConst()
+  const inverse = hitsGround.select(bottomRadius, nearest.max(1)).reciprocal().toConst()
   return {
     mean: along.mul(inverse).mul(viewpoint.cosLight).toConst() as Float,
     swing: across.mul(inverse).mul(viewpoint.sinLight).abs().max(1e-4).toConst() as Float
@@ -154,8 +153,8 @@ export function columnCosine(
 /** 1/κ and e^κ − 1 of a ray's distances. */
 function spacing(viewpoint: Viewpoint, hitsGround: Bool): { stretch: Float; growth: Float } {
   return {
-    stretch: select(hitsGround, viewpoint.groundStretch, viewpoint.skyStretch).toConst(),
-    growth: select(hitsGround, viewpoint.groundGrowth, viewpoint.skyGrowth).toConst()
+    stretch: hitsGround.select(viewpoint.groundStretch, viewpoint.skyStretch).toConst(),
+    growth: hitsGround.select(viewpoint.groundGrowth, viewpoint.skyGrowth).toConst()
   }
 }
 

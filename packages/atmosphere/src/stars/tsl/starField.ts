@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { If, float, ivec2, textureLoad, vec4 } from 'three/tsl'
 import type { DataTexture } from 'three'
 import type { Float, Int, Vec3, Vec4 } from '../../tsl-types'
@@ -35,9 +34,9 @@ export interface StarTextures {
 function starsOfCell(cells: DataTexture, direction: Vec3, sigma: Float): Vec4 {
   const [small, large] = STAR_LEVELS
   const isLarge = sigma.greaterThan(MAX_SIGMA_SMALL).toConst()
-  const size = select(isLarge, large.cells, small.cells).toConst() as Float
+  const size = isLarge.select(large.cells, small.cells).toConst() as Float
   const position = octahedralPoint(direction).add(1).mul(size.mul(0.5)).clamp(0, size.sub(1))
-  const firstRow = select(isLarge, small.cells, 0).toInt()
+  const firstRow = isLarge.select(small.cells, 0).toInt()
   return textureLoad(cells, ivec2(position).add(ivec2(0, firstRow))).toConst()
 }
 

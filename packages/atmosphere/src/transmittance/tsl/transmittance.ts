@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { smoothstep, vec2 } from 'three/tsl'
 import type { AtmosphereUniforms } from '../../air/AtmosphereUniforms'
 import type { Table } from '../../tables/TableAtlas'
@@ -82,7 +81,7 @@ export function transmittanceRay(
     .clamp(-1, 1)
   return {
     altitude: altitude,
-    cosView: select(distance.lessThan(1), 1, cosView),
+    cosView: distance.lessThan(1).select(1, cosView),
     distance: distance
   }
 }

@@ -1,5 +1,4 @@
-import { select } from '@welkin/geo'
-import { cameraProjectionMatrixInverse, screenUV, vec2, vec3, vec4 } from 'three/tsl'
+import { cameraProjectionMatrixInverse, screenUV, select, vec2, vec3, vec4 } from 'three/tsl'
 import type { Bool, Mat4, Vec3 } from '../../tsl-types'
 
 /** A fragment's line of sight in view space. */
@@ -19,7 +18,7 @@ export function screenRay(): ScreenRay {
   const perspective = vec3(inverse.mul(vec4(ndc, 0.5, 1)).xyz).toConst()
   // Not the last element: a perspective camera's is 1 as well if its near plane is at 1.
   const isOrthographic = inverse.element(2).element(3).equal(0).toConst()
-  const direction = perspective.mul(select(perspective.z.lessThan(0), 1, -1))
+  const direction = perspective.mul(perspective.z.lessThan(0).select(1, -1))
   return {
     direction: select(isOrthographic, vec3(0, 0, -1), direction),
     origin: select(isOrthographic, vec3(perspective.xy, 0), vec3(0)),

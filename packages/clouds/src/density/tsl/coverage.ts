@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { atan, fract, log2, mix, vec2 } from 'three/tsl'
+import { select } from '../../select'
 import type { Float, Int, LevelTexture, Vec2, Vec3 } from '../../tsl-types'
 
 /** The planet, as a look-up of its map needs it: a `CloudField`. */

@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { float, smoothstep } from 'three/tsl'
+import { select } from '../../select'
 import { densityForm } from '../formConstants'
 import type { Float } from '../../tsl-types'
 import type { LayerNodes } from './layer'

@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { float, vec2 } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../CloudField'
 import { stormBillows, stormFibres } from '../stormForm'
 import type { Float, Vec2 } from '../../tsl-types'

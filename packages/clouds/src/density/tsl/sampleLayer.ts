@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { If, float } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../CloudField'
 import type { Bool, Float, Vec3 } from '../../tsl-types'
 import { billows, bulge, detail, fineShare, MOST_DETAIL, topBillows } from './billows'

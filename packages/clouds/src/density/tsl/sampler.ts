@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { If, float, int, vec2, vec4 } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../CloudField'
 import { hasStorms } from '../kinds'
 import type { WeatherMap } from '../WeatherMap'

@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { Fn, If, bool, float, mix, smoothstep } from 'three/tsl'
+import { select } from '../../select'
 import { layout, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
 import { stormPlaces, stormShape } from '../stormForm'
 import type { LayerNodes } from './layer'

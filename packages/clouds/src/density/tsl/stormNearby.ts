@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { Fn, float, int, mat3, step, vec3, vec4 } from 'three/tsl'
+import { select } from '../../select'
 import { noisePeriods } from '../../layers/layerUniforms'
 import { cellOf, digitsOf, hashCell, wrapped } from '../../noise/tsl/cellHash'
 import {

@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { float } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../CloudField'
 import { columnForm, heightForm, strengthForm } from '../formConstants'
 import type { Float } from '../../tsl-types'

@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { float, vec2, vec3 } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../CloudField'
 import { strengthForm } from '../formConstants'
 import type { Float, Vec2, Vec3 } from '../../tsl-types'

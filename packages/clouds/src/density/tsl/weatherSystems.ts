@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { float, smoothstep, vec2, vec3, vec4 } from 'three/tsl'
+import { select } from '../../select'
 import { beltForm, cyclones, frontForm, SOUTHERN_TURN, systemsStatistics } from '../systemsForm'
 import type { Float, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { sine } from './planetWaves'

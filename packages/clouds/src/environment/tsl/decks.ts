@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { If, float, mix, vec3 } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../../density/CloudField'
 import type { CloudLight } from '../../light/CloudLightTable'
 import type { Float, Int, Vec3 } from '../../tsl-types'

@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { Fn, float, mix, vec2 } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudLight } from '../CloudLightTable'
 import { skyShareFit as fit } from '../cpu/skyShare'
 import { slabTableForm } from '../cpu/slabTableForm'

@@ -1,6 +1,6 @@
-import { select } from '@welkin/geo'
 import { horizontalIrradiance, transmittanceToLight } from '@welkin/atmosphere'
 import { If, float, mix, smoothstep } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../../density/CloudField'
 import { footprintOf, type CloudSample } from '../../density/tsl/sample'
 import type { Float, Vec3, Vec4 } from '../../tsl-types'

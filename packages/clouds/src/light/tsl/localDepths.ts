@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { float, int, mix, smoothstep, vec3 } from 'three/tsl'
+import { select } from '../../select'
 import { footprintOf } from '../../density/tsl/sample'
 import { extinctionNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'

@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { If, exp2, float, int, vec2 } from 'three/tsl'
+import { select } from '../../select'
 import { encodeDistance } from '../../temporal/tsl/packing'
 import {
   loop,

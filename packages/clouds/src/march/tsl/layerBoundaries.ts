@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { If, float, int } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../../density/CloudField'
 import type { Float, Int } from '../../tsl-types'
 import { forLayers, layerAt, type LayerRange } from '../../density/tsl/layer'

@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { Break, If, float, int, vec4 } from 'three/tsl'
+import { select } from '../../select'
 import { loop, type Bool, type Float, type Int, type Variable, type Vec3 } from '../../tsl-types'
 import { hasStorms, knowsStorms } from '../../density/kinds'
 import { samplePair, type ClearLayers } from '../../density/tsl/samplePair'

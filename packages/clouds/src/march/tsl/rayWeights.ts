@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { mix, vec2 } from 'three/tsl'
+import { select } from '../../select'
 import type { Float, Vec2 } from '../../tsl-types'
 
 /** Weight of the nearest of three rays in a row that pixels share. 1: noise of single rays is seen as a weave, as wide as blocks (*Rain and snow*). */

@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { If, float, mix, vec2, vec4 } from 'three/tsl'
+import { select } from '../../select'
 import { LEAST_TRANSMITTANCE } from '../../light/tsl/lighting'
 import { componentAt } from '../../density/tsl/componentAt'
 import type { Float, Variable, Vec2, Vec4 } from '../../tsl-types'

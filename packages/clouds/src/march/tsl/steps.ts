@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { If, bool, float } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../../density/CloudField'
 import type { QualityUniforms } from '../quality'
 import type { Bool, Float, Variable, Vec2 } from '../../tsl-types'

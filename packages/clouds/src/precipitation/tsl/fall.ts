@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { Fn, If, float, smoothstep, vec2 } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../../density/CloudField'
 import { billows, levelOf } from '../../density/tsl/billows'
 import type { LayerNodes } from '../../density/tsl/layer'

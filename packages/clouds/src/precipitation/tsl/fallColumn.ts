@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { Fn, float, smoothstep, vec3, vec4 } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
 import { resolutionAt } from '../../density/tsl/resolution'

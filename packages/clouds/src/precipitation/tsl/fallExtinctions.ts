@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { Fn, vec2 } from 'three/tsl'
+import { select } from '../../select'
 import { layout, type Float } from '../../tsl-types'
 import { extinctionForm } from '../fallForm'
 

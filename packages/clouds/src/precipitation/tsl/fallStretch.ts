@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { mix } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../../density/CloudField'
 import { crossings, FAR_AWAY } from '../../march/tsl/layerBoundaries'
 import type { CloudRay } from '../../march/tsl/march'

@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { float, vec3 } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
 import type { FallingDecks } from '../../environment/tsl/decks'

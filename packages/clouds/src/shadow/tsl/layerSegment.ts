@@ -1,4 +1,4 @@
-import { select } from '@welkin/geo'
+import { select } from '../../select'
 import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
 import type { Float } from '../../tsl-types'

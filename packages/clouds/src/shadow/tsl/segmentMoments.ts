@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { Break, If, bool, float, int, vec3 } from 'three/tsl'
+import { select } from '../../select'
 import type { CloudField } from '../../density/CloudField'
 import type { LayerNodes } from '../../density/tsl/layer'
 import { sampleLayerPair } from '../../density/tsl/sampler'

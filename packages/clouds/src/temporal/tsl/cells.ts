@@ -1,6 +1,6 @@
-import { select } from '@welkin/geo'
 import { If, float, uv, vec2, vec4 } from 'three/tsl'
 import { outputs, type Outputs } from '@welkin/atmosphere'
+import { select } from '../../select'
 import type { CloudField } from '../../density/CloudField'
 import type { Bool, Float, Int, Vec2, Vec4 } from '../../tsl-types'
 import { forLayers, layerAt } from '../../density/tsl/layer'

@@ -1,4 +1,4 @@
-import { select } from '@welkin/geo'
+import { select } from '../../select'
 import type { Float, Vec4 } from '../../tsl-types'
 
 /**

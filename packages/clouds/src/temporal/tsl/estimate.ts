@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { If, float, mix, vec2, vec4 } from 'three/tsl'
+import { select } from '../../select'
 import { loop, type Bool, type Float, type Vec2, type Vec4 } from '../../tsl-types'
 import type { FrameInputs } from '../../march/tsl/viewRay'
 import { LEAST_OPACITY, passesCellDepthTest, type Cell } from './cells'

@@ -1,5 +1,5 @@
-import { select } from '@welkin/geo'
 import { If, exp2, vec2, vec4 } from 'three/tsl'
+import { select } from '../../select'
 import type { Bool, Float, Mat3, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import type { FrameInputs, PixelRay } from '../../march/tsl/viewRay'
 import { passesDepthTest, SAME_DISTANCE } from './depthTest'

@@ -1,6 +1,6 @@
-import { select } from '@welkin/geo'
 import { If, float, mix, smoothstep, uv, vec4 } from 'three/tsl'
 import { outputs, type Outputs } from '@welkin/atmosphere'
+import { select } from '../../select'
 import type { Bool, Float, Vec2, Vec4 } from '../../tsl-types'
 import { viewRayAt, viewRayEnd, type FrameInputs } from '../../march/tsl/viewRay'
 import { isClear, type Cell } from './cells'

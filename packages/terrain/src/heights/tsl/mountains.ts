@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Break, Fn, If, float, smoothstep, vec4 } from 'three/tsl'
 import { fractalSum, keptShare } from '../../noise/tsl/fractalSum'
 import { latticeNoise } from '../../noise/tsl/latticeNoise'
@@ -59,20 +58,19 @@ const ridgedSum = /*#__PURE__*/ Fn(
       })
       const index = seed.add(float(octave)).add(RIDGES.seed)
       const isMoved = float(octave).lessThan(RIDGES.moved - 0.5)
-      const where = select(isMoved, place.offset, offset).toConst() as Vec3
+      const where = isMoved.select(place.offset, offset).toConst() as Vec3
       const plain = latticeNoise(reference, where, inverse, index).mul(STEEPNESS).toConst()
-      const noise = select(isMoved, place.back(plain), plain).toConst() as Vec4
+      const noise = isMoved.select(place.back(plain), plain).toConst() as Vec4
       const root = noise.w
         .mul(noise.w)
         .add(ROUNDNESS ** 2)
         .sqrt()
         .toConst()
       const fall = root.oneMinus().toConst()
-      const isValley = select(
-        float(octave).lessThan(RIDGES.valleys - 0.5),
-        1,
-        0
-      ).toConst() as unknown as Float
+      const isValley = float(octave)
+        .lessThan(RIDGES.valleys - 0.5)
+        .select(1, 0)
+        .toConst() as unknown as Float
       const sign = isValley.mul(-2).add(1).toConst()
       const ridge = fall.mul(fall).mul(sign).add(isValley).toConst()
       const steepness = fall.mul(noise.w).mul(inverse).mul(sign).mul(-2).div(root)
@@ -81,11 +79,10 @@ const ridgedSum = /*#__PURE__*/ Fn(
       const over = ridge.sub(isValley.mul(1 - 2 * MEAN_RIDGE).add(MEAN_RIDGE)).toConst()
       const gradient = slope.add(weight.xyz.mul(over))
       sum.addAssign(vec4(gradient, over.mul(weight.w)).mul(kept))
-      const roughening = select(
-        float(octave).lessThan(CRAGS - 0.5),
-        ROUGHENING,
-        CRAG_ROUGHENING
-      ).toConst() as unknown as Float
+      const roughening = float(octave)
+        .lessThan(CRAGS - 0.5)
+        .select(ROUGHENING, CRAG_ROUGHENING)
+        .toConst() as unknown as Float
       const next = ridge.mul(weight.w).mul(roughening).min(1).toConst()
       const turn = slope.add(weight.xyz.mul(ridge)).mul(next.oneMinus().mul(roughening).mul(2))
       weight.assign(vec4(turn, next.mul(float(2).sub(next))))

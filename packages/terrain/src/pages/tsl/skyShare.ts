@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { If, float, vec2, vec3, vec4 } from 'three/tsl'
 import type { HeightSource, SurfacePoint } from '../../heights/HeightSource'
 import { gradientAlong } from '../../surface/tsl/gradientAlong'
@@ -38,7 +37,7 @@ export function heightAndSky(
     const angle = azimuth.mul((2 * Math.PI) / AZIMUTHS).toConst()
     const direction = east.mul(angle.sin()).add(north.mul(angle.cos())).toConst()
     const isHere = n.lessThan(0)
-    const distance = select(isHere, 0, float(FARTHER).pow(ring).mul(NEAREST)).toConst() as Float
+    const distance = isHere.select(0, float(FARTHER).pow(ring).mul(NEAREST)).toConst() as Float
     const place = offset.add(direction.mul(distance)).toConst() as Vec3
     const detail = shortest.max(distance.mul(FINENESS)).toConst() as Float
     const sampled = source.sample({ reference, offset: place }, detail).toConst() as Vec4
@@ -46,7 +45,7 @@ export function heightAndSky(
       ground.assign(vec4(gradientAlong(sampled.xyz, up), sampled.w))
     }).Else(() => {
       const slope = sampled.w.sub(ground.w).div(distance).sub(ground.xyz.dot(direction))
-      rise.assign(slope.max(select(ring.lessThan(0.5), 0, rise) as unknown as Float))
+      rise.assign(slope.max(ring.lessThan(0.5).select(0, rise) as unknown as Float))
       If(ring.greaterThan(DISTANCES - 1.5), () => {
         sky.addAssign(rise.mul(rise).add(1).reciprocal())
       })

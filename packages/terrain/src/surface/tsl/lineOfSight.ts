@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { float, positionViewDirection, smoothstep, transformNormalToView, vec2 } from 'three/tsl'
 import type { Float, Vec2, Vec3 } from '../../tsl-types'
 
@@ -55,7 +54,7 @@ export function heightMet(heightAt: (height: Float) => Float): Float {
     const over = heightAt(float(height)).sub(height).toConst() as Float
     const back = over.div(over.sub(before).max(1e-4)).clamp(0, 1).div(STEPS)
     const isFirst = met.lessThan(0).and(over.greaterThanEqual(0))
-    met.assign(select(isFirst, back.add(height).min(1), met))
+    met.assign(isFirst.select(back.add(height).min(1), met))
     before.assign(over)
   }
   return met.max(0).toConst()

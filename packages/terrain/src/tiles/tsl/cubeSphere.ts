@@ -1,4 +1,3 @@
-import { select } from '@welkin/geo'
 import { Fn, vec3 } from 'three/tsl'
 import { layout, type Float, type Vec3 } from '../../tsl-types'
 
@@ -6,8 +5,8 @@ import { layout, type Float, type Vec3 } from '../../tsl-types'
 export function faceAxes(face: Float): { first: Vec3; second: Vec3 } {
   const axis = face.mul(0.5).floor().toConst()
   const sign = face.sub(axis.mul(2)).mul(-2).add(1)
-  const isX = select(axis.lessThan(0.5), 1, 0)
-  const isZ = select(axis.greaterThan(1.5), 1, 0)
+  const isX = axis.lessThan(0.5).select(1, 0)
+  const isZ = axis.greaterThan(1.5).select(1, 0)
   const isY = isX.add(isZ).oneMinus()
   return {
     first: vec3(isZ, isX, isY).mul(sign).toConst(),
