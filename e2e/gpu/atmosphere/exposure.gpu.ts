@@ -313,7 +313,8 @@ const judged = (
 /** Checks scenes' tones as viewers see them. */
 async function judge(t: GpuContext, all: readonly Judged[]): Promise<void> {
   const renderer = await t.createRenderer(sceneSize)
-  const stage = new ExposureStage(renderer, nights.includes(all[0].scene))
+  const isNight = nights.includes(all[0].scene)
+  const stage = new ExposureStage(renderer, isNight)
   renderer.library.addToneMapping(photographicToneMapping(), CustomToneMapping)
   /** Luminance scale, and luminance that it is of, by scene. */
   const exposed = new Map<Judged, readonly [scale: number, metered: number]>()
@@ -328,12 +329,10 @@ async function judge(t: GpuContext, all: readonly Judged[]): Promise<void> {
       if (before === undefined) {
         // From a scale for daylight; half floats hold no night in that.
         stage.atmosphere.luminanceScale = DAYLIGHT
-        await stage.settle(4)
+        await stage.settle(isNight ? 4 : 2)
         exposed.set(each, [stage.atmosphere.luminanceScale, stage.exposure.luminance!])
       } else {
         stage.atmosphere.luminanceScale = before[0]
-        await nextFrame()
-        stage.draw()
       }
       await nextFrame()
       const picture = await t.capture(renderer, () => stage.draw())

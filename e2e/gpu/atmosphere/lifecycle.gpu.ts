@@ -121,20 +121,19 @@ gpuTest(
     const first = compiled()
     expectTrue(first > 0, 'the first picture compiled nothing')
     const { mieScattering, mieExtinction, absorptionExtinction, groundAlbedo } = parameters
-    const others = {
-      aerosols: { mieScattering: all(3e-5), mieExtinction: all(3.3e-5) },
-      ozone: { absorptionExtinction: all(0) },
-      ground: { groundAlbedo: all(0.6) }
-    }
-    let last = before
-    for (const [name, change] of Object.entries(others)) {
-      parameters.set(change)
-      const picture = await draw()
-      const difference = relativeDifferences(last, picture).at(-1)!
-      t.note(`other ${name} change ${(100 * difference).toFixed(0)} %`)
-      expectTrue(difference > 0.02, `${name} change no pixel by more than ${difference}`)
-      last = picture
-    }
+    parameters.set({
+      mieScattering: all(3e-5),
+      mieExtinction: all(3.3e-5),
+      absorptionExtinction: all(0),
+      groundAlbedo: all(0.6)
+    })
+    const difference = relativeDifferences(before, await draw()).at(-1)!
+    t.note(`other aerosols, ozone and ground change ${(100 * difference).toFixed(0)} %`)
+    expectTrue(difference > 0.02, `they change no pixel by more than ${difference}`)
+    const changed = await read(atmosphere)
+    const equal = values.filter((value, i) => value > 0 && value === changed[i]).length
+    t.note(`${equal} of ${values.length} texels' numbers are as before`)
+    expectTrue(equal < 0.1 * values.length, `${equal} numbers of tables are as before`)
 
     const expectSameTables = (actual: readonly number[], how: string): void => {
       const differs = values.some((value, i) => value !== actual[i])

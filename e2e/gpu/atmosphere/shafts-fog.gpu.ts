@@ -70,47 +70,51 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
-gpuTest('takes what height fog scatters once from its light where all is dark', async t => {
-  const renderer = await t.createRenderer(size)
-  const elevation = 12
-  const set = stage(renderer, elevation, { quality: 'reference' })
-  const { scene, camera, draw, shafts, atmosphere } = set
-  const [density, falloff, asymmetry, distance] = [0.004, 300, 0.75, 400]
-  atmosphere.add(heightFog({ density, falloff, asymmetry }))
-  shafts.add({ castInto: () => ({ transmittance: () => () => float(0) }) })
-  addBox(scene, [0, 0, -distance - 50], [2000, 400, 100])
-  camera.fov = 1
-  camera.updateProjectionMatrix()
-  const dark = await draw()
-  shafts.enabled = false
-  const lit = await draw()
+gpuTest(
+  'takes what height fog scatters once from its light where all is dark',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const elevation = 12
+    const set = stage(renderer, elevation, { quality: 'reference' })
+    const { scene, camera, draw, shafts, atmosphere } = set
+    const [density, falloff, asymmetry, distance] = [0.004, 300, 0.75, 400]
+    atmosphere.add(heightFog({ density, falloff, asymmetry }))
+    shafts.add({ castInto: () => ({ transmittance: () => () => float(0) }) })
+    addBox(scene, [0, 0, -distance - 50], [2000, 400, 100])
+    camera.fov = 1
+    camera.updateProjectionMatrix()
+    const dark = await draw()
+    shafts.enabled = false
+    const lit = await draw()
 
-  const air = parameters()
-  const sun = (elevation * Math.PI) / 180
-  const radius = air.bottomRadius + 2
-  const ray = { radius, cosView: 0, cosLight: Math.sin(sun), cosViewLight: Math.cos(sun) }
-  const layer = { density, falloff, base: 0 }
-  const depth = twin.fogDepth(layer, radius, 0, air.bottomRadius, distance)
-  const through = Math.exp(-depth)
-  // The fog stands at half of its visible depth, and hides the air behind.
-  const middle = (0.5 * Math.min(depth, 1)) / (density * Math.exp(-2 / falloff))
-  const [before, all] = [middle, distance].map(far => inScatter(air, null, ray, far))
-  const chord = 1 + asymmetry ** 2 - 2 * asymmetry * ray.cosViewLight
-  const phase = (1 - asymmetry ** 2) / (4 * Math.PI * chord ** 1.5)
-  const above = (density * falloff * (1 - asymmetry) * Math.exp(-2 / falloff)) / Math.sin(sun)
-  const sunlight = lightTransmittance(air, radius, ray.cosLight)
-  for (let k = 0; k < 3; k++) {
-    const fog = phase * Math.exp(-above) * sunlight[k] * (1 - through)
-    const expected = fog + before[k] + through * (all[k] - before[k])
-    const [x, y] = [size.width / 2, size.height / 2]
-    const irradiance = shafts.source.irradiance.value.getComponent(k)
-    const lost = (lit.at(x, y)[k] - dark.at(x, y)[k]) / irradiance
-    t.note(`${(100 * (lost / expected - 1)).toFixed(2)} %`)
-    expectClose(lost, expected, { relative: 0.01 }, `channel ${k}`)
-    expectTrue(dark.at(x, y)[k] > 0.1 * lit.at(x, y)[k], 'light scattered more often stays')
-  }
-  set.dispose()
-})
+    const air = parameters()
+    const sun = (elevation * Math.PI) / 180
+    const radius = air.bottomRadius + 2
+    const ray = { radius, cosView: 0, cosLight: Math.sin(sun), cosViewLight: Math.cos(sun) }
+    const layer = { density, falloff, base: 0 }
+    const depth = twin.fogDepth(layer, radius, 0, air.bottomRadius, distance)
+    const through = Math.exp(-depth)
+    // The fog stands at half of its visible depth, and hides the air behind.
+    const middle = (0.5 * Math.min(depth, 1)) / (density * Math.exp(-2 / falloff))
+    const [before, all] = [middle, distance].map(far => inScatter(air, null, ray, far))
+    const chord = 1 + asymmetry ** 2 - 2 * asymmetry * ray.cosViewLight
+    const phase = (1 - asymmetry ** 2) / (4 * Math.PI * chord ** 1.5)
+    const above = (density * falloff * (1 - asymmetry) * Math.exp(-2 / falloff)) / Math.sin(sun)
+    const sunlight = lightTransmittance(air, radius, ray.cosLight)
+    for (let k = 0; k < 3; k++) {
+      const fog = phase * Math.exp(-above) * sunlight[k] * (1 - through)
+      const expected = fog + before[k] + through * (all[k] - before[k])
+      const [x, y] = [size.width / 2, size.height / 2]
+      const irradiance = shafts.source.irradiance.value.getComponent(k)
+      const lost = (lit.at(x, y)[k] - dark.at(x, y)[k]) / irradiance
+      t.note(`${(100 * (lost / expected - 1)).toFixed(2)} %`)
+      expectClose(lost, expected, { relative: 0.01 }, `channel ${k}`)
+      expectTrue(dark.at(x, y)[k] > 0.1 * lit.at(x, y)[k], 'light scattered more often stays')
+    }
+    set.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest(
   'takes from moonlit air behind fog what the fog lets through',

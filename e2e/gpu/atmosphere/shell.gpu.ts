@@ -1,4 +1,5 @@
 import {
+  aerialPerspectiveFog,
   Atmosphere,
   AtmosphereParameters,
   airlessParameters,
@@ -21,7 +22,17 @@ import { drawForward, expectLight, relativeDifferences } from '../harness/atmosp
 import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import type { Picture } from '../harness/picture'
-import { body, cameraAt, draw, FAR_VIEW, luminance, RADIUS, size, VIEWS } from '../harness/shell'
+import {
+  body,
+  cameraAt,
+  draw,
+  FAR_VIEW,
+  LIMB_VIEW,
+  luminance,
+  RADIUS,
+  size,
+  VIEWS
+} from '../harness/shell'
 
 gpuTest(
   'looks the same for bodies of any size, on any world scale',
@@ -49,28 +60,41 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
+/** True if the lower edge of a pixel sees the ground of a body about the origin. */
+function seesGround(camera: PerspectiveCamera, pixel: number): boolean {
+  const [x, y] = [pixel % size.width, Math.floor(pixel / size.width)]
+  const point = new Vector3(((x + 0.5) / size.width) * 2 - 1, 1 - ((y + 1) / size.height) * 2, 0.5)
+  const ray = point.unproject(camera).sub(camera.position).normalize()
+  const along = ray.dot(camera.position)
+  return along < 0 && along ** 2 > camera.position.lengthSq() - RADIUS ** 2
+}
+
 gpuTest('is the same sky as the background, inside and outside the air', async t => {
   const renderer = await t.createRenderer(size)
-  // Black ground: what is left is the air alone, as a shell without a body has it.
-  const parameters = new AtmosphereParameters({ groundAlbedo: [0, 0, 0, 0] })
+  const isAll = t.backend === 'webgpu'
+  // Black ground: what is left is the air alone, as a shell without a body has it. WebGL, for which that would be a bake of
+  // its own, looks past the ground.
+  const parameters = new AtmosphereParameters(isAll ? { groundAlbedo: [0, 0, 0, 0] } : {})
   const atmosphere = new Atmosphere({ parameters, ellipsoid: new Ellipsoid(RADIUS, RADIUS) })
   atmosphere.worldToECEF.identity()
+  const scene = new Scene()
+  scene.backgroundNode = skyBackground(atmosphere, { showSun: false })
+  scene.fogNode = aerialPerspectiveFog(atmosphere)
+  const shell = new AtmosphereShell(parameters, RADIUS, { sun: atmosphere })
+  const alone = new Scene().add(shell)
   const suns = [new Vector3(1, 0.02, -0.5), new Vector3(1, 0.6, 0.4), new Vector3(1, -0.1, -1)]
   // Where the sun is is decided by shaders that both backends share.
-  for (const sun of t.backend === 'webgpu' ? suns : suns.slice(0, 1)) {
+  for (const sun of isAll ? suns : suns.slice(0, 1)) {
     atmosphere.sunDirection = sun
-    for (const [distance, pitch, fov] of [...VIEWS, FAR_VIEW]) {
+    for (const [distance, pitch, fov] of isAll ? [...VIEWS, FAR_VIEW] : [LIMB_VIEW, VIEWS[2]]) {
       const camera = cameraAt(distance, RADIUS, pitch, fov)
-      const scene = new Scene()
-      scene.backgroundNode = skyBackground(atmosphere, { showSun: false })
       const expected = await drawForward(renderer, scene, camera, atmosphere)
-      const shell = new AtmosphereShell(parameters, RADIUS, { sun: atmosphere })
-      const alone = new Scene().add(shell)
       const picture = await draw(renderer, alone, camera)
       // Where there is light: a hundredth of the brightest is dusk, which eight steps only sketch.
       const brightest = Math.max(...expected.data.filter((_, i) => i % 4 === 1))
       const errors: number[] = []
       for (let i = 0; i < expected.data.length; i += 4) {
+        if (!isAll && seesGround(camera, i / 4)) continue
         const [want, got] = [expected, picture].map(({ data }) =>
           luminance(Array.from(data.slice(i, i + 3)))
         )
@@ -81,14 +105,14 @@ gpuTest('is the same sky as the background, inside and outside the air', async t
       t.note(`${distance} radii: median ${middle.toExponential(1)}, p95 ${most.toExponential(1)}`)
       expectTrue(errors.length > 100, `${distance} radii: only ${errors.length} pixels have light`)
       // The shell interpolates light per length between elevations, the sky all of the light.
-      const [likely, worst] = fov === undefined ? [0.0025, 0.005] : [0.005, 0.02]
+      const [likely, worst] = distance < 10 ? [0.0025, 0.005] : [0.005, 0.02]
       expectTrue(
         middle < likely && most < worst,
         `${distance} radii, sun ${sun.y}: ${middle}, ${most}`
       )
-      shell.dispose()
     }
   }
+  shell.dispose()
   atmosphere.dispose()
 })
 

@@ -1,6 +1,6 @@
 import { aerialPerspective, aerialPerspectiveFog, skyBackground } from '@welkin/atmosphere'
 import type { Atmosphere } from '@welkin/atmosphere'
-import { FloatType, RenderTarget, type Camera, type Scene } from 'three'
+import { FloatType, RenderTarget, Scene, type Camera } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { expectTrue } from './expect'
@@ -31,6 +31,13 @@ export async function drawForward(
   const picture = await drawToFloat(renderer, () => renderer.render(scene, camera))
   Object.assign(scene, { backgroundNode: background, fogNode: fog })
   return picture
+}
+
+/** A scene that keeps its sky and haze, which are else made and compiled anew for each picture. */
+export function airScene(atmosphere: Atmosphere, scene = new Scene()): Scene {
+  scene.backgroundNode = skyBackground(atmosphere)
+  scene.fogNode = aerialPerspectiveFog(atmosphere)
+  return scene
 }
 
 /** Draws with sky and haze as a post effect. */

@@ -67,5 +67,8 @@ export const VIEWS = [
   [1.0005, -0.02]
 ] as const
 
+/** View of the air above the horizon, from outside it, with a telescope: as `FAR_VIEW`. */
+export const LIMB_VIEW = [1.06, -0.32, 10] as const
+
 /** View from so far that the air is marched, with a telescope: distance, azimuth, field of view [°]. */
 export const FAR_VIEW = [25, -Math.PI / 2, 6] as const
