@@ -12,15 +12,15 @@ import { alignment, contrasts, placeIn, straighten, type SkySquare } from '../ha
 
 takeFineShadows('half')
 
-const canvas = { width: 144, height: 120 }
+const canvas = { width: 168, height: 140 }
 /** Edge of the straightened picture [pixels]. */
-const size = 96
+const size = 112
 /** Altitude that decks are raised to, so that there are many clouds in a picture [m]. */
 const BASE = 4000
 /** Distance between their billows: four in a period of the shape [m]. */
 const BILLOWS = 650
 /** Half of the width that contrasts are against the mean of [pixels]. */
-const ABOUT = 9
+const ABOUT = 10
 
 interface View {
   readonly name: string

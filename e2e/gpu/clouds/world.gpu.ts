@@ -307,7 +307,7 @@ gpuTest(
     expectTrue(below > 1.5 * clearBelow, `from below ${below}, without clouds ${clearBelow}`)
 
     // The same clouds in a mirror, and as the light that they send down.
-    const overlay = cloudEnvironment(node, { size: 36, quality })
+    const overlay = cloudEnvironment(node, { size: 48, quality })
     const environment = skyEnvironment(atmosphere, { overlay, diffuse: false })
     plane.material = new MeshStandardMaterial({ metalness: 1, roughness: 0 }) as never
     scene.environmentNode = environment
