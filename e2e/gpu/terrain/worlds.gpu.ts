@@ -133,8 +133,9 @@ gpuTest(
     const atmosphere = new Atmosphere()
     atmosphere.place(PLACE)
     const { terrain, scene } = groundOf(atmosphere)
-    const wide = new OrthographicCamera(-1.5e6, 1.5e6, 1e6, -1e6, 0, 1e7)
-    wide.position.y = terrain.heightAt(PLACE.longitude, PLACE.latitude) + 4000
+    // Beyond the horizon, which is 2,300 km away.
+    const wide = new OrthographicCamera(-3.9e6, 3.9e6, 2.6e6, -2.6e6, 0, 1e7)
+    wide.position.y = terrain.heightAt(PLACE.longitude, PLACE.latitude) + 400_000
     wide.rotation.x = -Math.PI / 2
     wide.updateMatrixWorld()
     const cameras = [cameraOver(terrain, 2, -80), cameraOver(terrain, 500, -90), wide]
