@@ -74,17 +74,14 @@ gpuTest(
   async t => {
     const layers = cloudPreset('fairWeather')
     const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
-    const columns = new CloudColumns(scene.field, 96, 200_000, 12)
+    const columns = new CloudColumns(scene.field, 80, 200_000, 12)
     const misses: string[] = []
     // Optical depths as they are, and as a march counts them.
     for (const [coverage, longitude, depthScale] of [
       [0.03, 20, 0.6],
-      [0.1, 20, 0.6],
       [0.2, 20, 1],
       [0.4, 20, 0.6],
-      [0.08, -120, 1],
       [0.93, 20, 1],
-      [0.4, -120, 1],
       [0.7, -120, 0.6]
     ]) {
       layers.at(0).set({ coverage })
@@ -114,7 +111,7 @@ gpuTest(
     const layers = new CloudLayers([{}])
     const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45 })
     const { field } = scene
-    const [size, steps, depthScale] = [72, 16, 0.6]
+    const [size, steps, depthScale] = [64, 16, 0.6]
     field.depthScale.value = depthScale
     const columns = new PlanetColumns(field, size, steps)
     const misses: string[] = []
@@ -123,7 +120,7 @@ gpuTest(
       ['stratocumulus', 0],
       ['cumulonimbus', 0]
     ] as const) {
-      for (const coverage of [0, 0.03, 0.1, 0.2, 0.5, 0.8, 0.95, 1]) {
+      for (const coverage of [0, 0.03, 0.2, 0.5, 0.95, 1]) {
         layers.at(0).set({ ...cloudPreset(name).at(index).parameters, coverage })
         scene.update()
         const found: number[] = []
@@ -188,7 +185,7 @@ gpuTest(
       layers.at(0).set({ coverage: 0.5 })
       for (let i = 1; i < layers.length; i++) layers.at(i).set({ coverage: 0 })
       const scene = await cloudScene(t, layers, { longitude: 100, latitude: -30 }, map)
-      const columns = new CloudColumns(scene.field, 72, 600_000, 12)
+      const columns = new CloudColumns(scene.field, 60, 600_000, 12)
       for (const longitude of [100, 60]) {
         scene.field.atmosphere.place({ longitude, latitude: -30 })
         scene.update()

@@ -24,26 +24,40 @@ import { gpuTest } from '../harness/gpu-test'
 const twin = new NoiseTextures()
 const names = Object.keys(NOISE_SIZE) as NoiseName[]
 
+/** Slices of textures that WebGL bakes in part. */
+const SLICES = 6
+
 gpuTest(
   'bakes the noise that float64 computes, levels of detail and all',
   async t => {
     const renderer = await t.createRenderer()
     const field = new CloudField(new Atmosphere(), new CloudLayers())
-    let frames = 0
-    do {
-      expectTrue(!field.noise.isReady && frames < 40, `not drawn after ${frames} frames`)
-      frames++
-    } while (!field.bake(renderer, 10))
-    t.note(`${frames} frames of 10 slices`)
-    expectTrue(frames > 20, `drawn in ${frames} frames`)
+    // The functions are the same on both backends: on WebGL some slices tell, and one texture that is whole.
+    const isWhole = (name: NoiseName): boolean => t.backend === 'webgpu' || name === 'detail'
+    if (t.backend === 'webgpu') {
+      let frames = 0
+      do {
+        expectTrue(!field.noise.isReady && frames < 40, `not drawn after ${frames} frames`)
+        frames++
+      } while (!field.bake(renderer, 10))
+      t.note(`${frames} frames of 10 slices`)
+      expectTrue(frames > 20, `drawn in ${frames} frames`)
+    } else {
+      for (const name of names) {
+        const steps = field.noise[name].bake(renderer)
+        for (let slice = 0; isWhole(name) || slice < SLICES; slice++) if (steps.next().done) break
+      }
+    }
     const draw = random(1)
     for (const name of names) {
       const source = texture3D(field.noise[name].target.texture)
-      for (const level of [0, 1, 2.5]) {
+      for (const level of isWhole(name) ? [0, 1, 2.5] : [0]) {
         // Beyond the period, too: it repeats.
-        const inputs = Array.from({ length: level === 0 ? 60 : 6 }, () =>
-          [4, 4, 4].map(range => Math.fround(range * draw() - 1))
-        )
+        const inputs = Array.from({ length: level === 0 ? 60 : 6 }, () => {
+          const [x, y, z] = [4, 4, 4].map(range => range * draw() - 1)
+          const inSlices = (0.5 + (SLICES - 1) * ((z + 1) / 4)) / NOISE_SIZE[name]
+          return [x, y, isWhole(name) ? z : inSlices].map(Math.fround)
+        })
         const results = await evaluateOnGpu(renderer, inputs, input =>
           vec4(
             (source.sample(input.xyz) as unknown as { level: (n: Node) => Node<'vec4'> }).level(

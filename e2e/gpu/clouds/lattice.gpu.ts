@@ -12,13 +12,15 @@ import { alignment, contrasts, placeIn, straighten, type SkySquare } from '../ha
 
 takeFineShadows('half')
 
-const canvas = { width: 192, height: 160 }
+const canvas = { width: 168, height: 140 }
 /** Edge of the straightened picture [pixels]. */
-const size = 128
+const size = 112
 /** Altitude that decks are raised to, so that there are many clouds in a picture [m]. */
 const BASE = 4000
 /** Distance between their billows: four in a period of the shape [m]. */
 const BILLOWS = 650
+/** Half of the width that contrasts are against the mean of [pixels]. */
+const ABOUT = 10
 
 interface View {
   readonly name: string
@@ -105,7 +107,7 @@ gpuTest(
         const picture = await drawToFloat(renderer, () => pipeline.render())
         const light = straighten(picture, camera, square, size)
         const axes = axesOf(atmosphere, node.field.rotations[0])
-        const seen = contrasts(light, size, 12)
+        const seen = contrasts(light, size, ABOUT)
         const sky = alignment(seen.values, size, longest)
         const along = [...axes].map(([axis, angle]) => ({ axis, power: sky.along(angle) }))
         const worst = along.reduce((a, b) => (a.power > b.power ? a : b))
@@ -120,7 +122,7 @@ gpuTest(
             value * (1 + seen.deviation * Math.sin((2 * Math.PI * (x * dx + z * dz)) / BILLOWS))
           )
         }
-        const rows = alignment(contrasts(light.map(rowsOf), size, 12).values, size, longest)
+        const rows = alignment(contrasts(light.map(rowsOf), size, ABOUT).values, size, longest)
         const { ratio, wave } = sky.peak
         t.note(
           `${name} ${view}: contrast ${seen.deviation.toFixed(3)}, peak ${ratio.toFixed(1)}, along ${worst.axis} ${worst.power.toFixed(2)}, along any line ${any.toFixed(2)}; with rows ${rows.peak.ratio.toFixed(0)}, ${rows.along(angle).toFixed(1)}`

@@ -141,37 +141,6 @@ gpuTest('a shader finds heights and slopes as the CPU does', async t => {
   if (worstSlope > 0.002) throw new Error(`slopes differ by ${worstSlope}`)
 })
 
-gpuTest(
-  'the ground 2 m away is drawn where the CPU finds it, within 1 cm',
-  async t => {
-    const { draw, camera, atmosphere, terrain } = await stage(t, 16, { width: 96, height: 64 })
-    // A wide view has three times as many pages.
-    camera.fov = 20
-    const { ellipsoid } = atmosphere
-    let worst = 0
-    let count = 0
-    // A summit, the antimeridian, a pole.
-    for (const [longitude, latitude] of [
-      [1, 47],
-      [180, -12],
-      [70, 89.999999]
-    ]) {
-      const picture = await draw(longitude, latitude, 2, -Math.PI / 2)
-      for (const point of groundPoints(picture, camera)) {
-        const { longitude: east, latitude: north, height } = ellipsoid.ecefToGeodetic(point)
-        worst = Math.max(worst, Math.abs(height - terrain.heightAt(east, north)))
-        count++
-      }
-    }
-    t.note(`${count} points, within ${(1000 * worst).toFixed(1)} mm`)
-    if (count < 2000) throw new Error(`only ${count} points of ground`)
-    if (worst > 0.01) throw new Error(`the drawn ground is ${worst} m off`)
-    terrain.dispose()
-  },
-  // On WebGL `terrain/flat` holds what is drawn to 1 cm.
-  { backends: ['webgpu'] }
-)
-
 gpuTest('a shader sees as much of the sky as the CPU does', async t => {
   const { ellipsoid } = new Atmosphere()
   const subpoint = ellipsoid.geodeticToECEF({ longitude: 1.02, latitude: 47.01 })
@@ -255,14 +224,14 @@ gpuTest(
   'there is no hole in the ground for cameras anywhere',
   async t => {
     const made = await stage(t, 8, { width: 96, height: 64 })
-    const cameras = 9
+    const cameras = 6
     const pixels = await findHoles(made, cameras)
     // A leap to where hardly any page is.
     const { drawn } = made.terrain.pages
-    const leaps = await findHoles(made, 6, 6)
+    const leaps = await findHoles(made, 4, 6)
     if (made.terrain.pages.drawn - drawn > 60)
       throw new Error('more pages were drawn than asked for')
-    t.note(`${cameras} cameras, ${pixels} pixels; with pages missing 6, ${leaps}`)
+    t.note(`${cameras} cameras, ${pixels} pixels; with pages missing 4, ${leaps}`)
     if (Math.min(pixels, leaps) < 5000) throw new Error('hardly any ground was looked at')
     made.terrain.dispose()
   },
@@ -327,12 +296,12 @@ gpuTest(
 gpuTest(
   'the ground does not jump on the way from 2 m to 20,000 km',
   async t => {
-    const { draw, camera, terrain } = await stage(t, 16, { width: 48, height: 32 })
+    const { draw, camera, terrain } = await stage(t, 8, { width: 48, height: 32 })
     // Narrow: no slope is seen from behind.
     camera.fov = 20
     let worst = 0
     let where = 0
-    for (let height = 2; height < 2e7; height *= 3.3) {
+    for (let height = 2; height < 2e7; height *= 4) {
       const distances = async (factor: number): Promise<Float32Array> => {
         const picture = await draw(1, 47, height * factor, -Math.PI / 2)
         return picture.data.filter((_, i) => i % 4 === 2).map(z => -z / (height * factor))

@@ -17,6 +17,8 @@ import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
 
 const SIZE = { width: 48, height: 32 }
+/** Angle of view [°]: a wider one has three times as many pages. */
+const FOV = 20
 const PLACE = { longitude: 0.494, latitude: 46.35 }
 /** Small pages: a software renderer draws them. */
 const options = { resolution: 8, seaLevel: -Infinity, pageMemory: 10 }
@@ -39,7 +41,7 @@ function cameraOver(terrain: Terrain, clearance: number, pitch: number): Perspec
   const { atmosphere } = terrain
   const { ellipsoid } = atmosphere
   const units = 1 / atmosphere.metersPerUnit
-  const camera = new PerspectiveCamera(60, SIZE.width / SIZE.height, 0.05 * units, 1e8 * units)
+  const camera = new PerspectiveCamera(FOV, SIZE.width / SIZE.height, 0.05 * units, 1e8 * units)
   const height = terrain.heightAt(PLACE.longitude, PLACE.latitude) + clearance
   const position = ellipsoid.geodeticToECEF({ ...PLACE, height })
   const toWorld = atmosphere.worldToECEF.clone().invert()
@@ -131,8 +133,9 @@ gpuTest(
     const atmosphere = new Atmosphere()
     atmosphere.place(PLACE)
     const { terrain, scene } = groundOf(atmosphere)
-    const wide = new OrthographicCamera(-1.5e6, 1.5e6, 1e6, -1e6, 0, 1e7)
-    wide.position.y = terrain.heightAt(PLACE.longitude, PLACE.latitude) + 4000
+    // Beyond the horizon, which is 2,300 km away.
+    const wide = new OrthographicCamera(-3.9e6, 3.9e6, 2.6e6, -2.6e6, 0, 1e7)
+    wide.position.y = terrain.heightAt(PLACE.longitude, PLACE.latitude) + 400_000
     wide.rotation.x = -Math.PI / 2
     wide.updateMatrixWorld()
     const cameras = [cameraOver(terrain, 2, -80), cameraOver(terrain, 500, -90), wide]
