@@ -151,9 +151,10 @@ export function cloudAmbientShares(
   const sky = at(uv, cosView)
   // The same slab seen from below.
   const ground = at(vec2(uv.x.oneMinus(), uv.y), cosView.negate().toConst())
-  const [open, shut] = [depthAbove, depthBelow].map(depth => depth.max(0).mul(-fit.decay).exp())
-  const slope = open.add(shut).mul(fit.thinSlope).add(fit.slope)
-  const share = open.sub(shut).mul(fit.tops).add(slope.mul(cosView)).add(0.5)
+  const [high, low] = [depthAbove, depthBelow].map(depth => depth.max(0).toConst() as Float)
+  const slope = high.add(low).mul(-fit.decay).exp().mul(fit.thinSlope).add(fit.slope)
+  const ratio = low.add(fit.face).div(high.add(fit.face))
+  const share = ratio.log().mul(fit.power).add(slope.mul(cosView)).negate().exp().add(1).reciprocal()
   const both = sky.add(ground).toConst()
   const skyShare = mix(sky, both.mul(share), layered.oneMinus().mul(resolved)).toConst()
   return { sky: skyShare, ground: both.sub(skyShare).toConst() }

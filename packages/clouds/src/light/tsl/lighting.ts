@@ -75,7 +75,7 @@ export function sourceAt(context: ShadingContext, shaded: ShadedSample): CloudSh
     cosView,
     cosViewLight,
     viewChord: [depthToCamera, depthBehind] as const,
-    verticalChord: [depthAbove, depthBelow] as const,
+    verticalChord: [depthAbove, depths.likelyBelow.mul(scale).toConst() as Float] as const,
     filled: depths.filled,
     resolved: mix(fit.unresolvedChords, 1, resolved) as Float,
     faces: smoothstep(...facingFit.footprints, footprint).oneMinus() as Float

@@ -1,9 +1,9 @@
-import { float, int, mix, smoothstep, vec3 } from 'three/tsl'
+import { float, int, mix, smoothstep, vec4 } from 'three/tsl'
 import { select } from '../../select'
 import { footprintOf } from '../../density/tsl/sample'
 import { extinctionNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
-import { loop, type Float, type Int, type Vec3 } from '../../tsl-types'
+import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
 import { LOWEST_COSINE } from './cloudLight'
 import type { ShadedSample, ShadingContext, ShadingLight } from './shadingContext'
 
@@ -28,10 +28,12 @@ const LOW_LIGHT_STEPS = 2
 const FEWEST_STEPS = 2
 
 /**
- * Height at which the cloud above is probed, as a part of the way to the top. Higher: towers count as
- * shallow, too bright from the sky (*Storm*).
+ * Distance at which the cloud above and below is probed, as a part of the way to its top and to its base. Greater: towers count
+ * as shallow, too bright from the sky (*Storm*).
  */
-const ABOVE = 0.35
+const PROBED_PART = 0.35
+/** Means of extinction up to there and beyond: parts of it near the place and of the probed one. */
+const MEAN = [PROBED_PART / 2, 0.5] as const
 
 /**
  * Most of an isolated cloud above or below a place that counts for light of sky and ground: the rest is open to its sides [m].
@@ -46,10 +48,10 @@ const MOST_REACH = 700
 const WIDEST = 1.5
 
 /**
- * Mean extinction below a place of an isolated cloud, as a part of its own; twice as much in decks. Faces lean
+ * Mean extinction below a place of an isolated cloud, as a part of that near the place, if nothing is probed; twice as much in decks. Faces lean
  * over air: 0.35 is what single clouds of a large-eddy simulation have.
  */
-const BELOW = 0.35
+const LIKELY_BELOW = 0.35
 
 /** Optical depths around a sample, not delta-scaled. */
 export interface LocalDepths {
@@ -59,6 +61,8 @@ export interface LocalDepths {
   through: Float
   above: Float
   below: Float
+  /** Depth below an isolated cloud's place as `lateralLeakFit` knows it: as dense as near the place. */
+  likelyBelow: Float
   /** Mean extinction on that ray, from end to end of its clouds, over the layers'; above 1 where there is no map. */
   filled: Float
 }
@@ -87,32 +91,35 @@ export function localDepths(
     .max(lowness.mul(LOW_LIGHT_PROBED))
     .min(toTop)
     .toConst() as Float
-  /** Extinction at the sample, optical depth towards the light, extinction above. */
-  const found = vec3(0).toVar() as Vec3
+  /** Extinction near the sample, optical depth towards the light, extinction above and below. */
+  const found = vec4(0).toVar() as Vec4
   const asked = float(quality.lightSteps).add(lowness.mul(LOW_LIGHT_STEPS).ceil())
   // Steps shorter than a pixel see nothing more.
   const seen = probed.div(footprintOf(field, sample).max(1e-3)).ceil().max(FEWEST_STEPS)
   const count = asked.min(seen).toInt().toConst() as Int
-  // The density function is inlined once for both directions: shaders stay short.
-  loop('probe', count.add(int(1)), index => {
-    const isUpwards = index.equal(count).toConst()
+  // Decks have no undersides but their own.
+  const isIsolated = layered.lessThan(1)
+  const probes = count.add(select(isIsolated, int(2), int(1)) as Int)
+  // The density function is inlined once for all directions: shaders stay short.
+  loop('probe', probes, index => {
+    const isAside = index.greaterThanEqual(count).toConst()
+    const isAbove = index.equal(count).toConst()
     // Steps grow from the sample on: (i/n)² of the way.
     const from = float(index).div(float(count)).toConst() as Float
     const to = float(index).add(1).div(float(count)).toConst() as Float
     const [start, end] = [from.mul(from).mul(probed), to.mul(to).mul(probed)]
-    const middle = select(isUpwards, above.mul(ABOVE), start.add(end).mul(0.5)).toConst() as Float
-    const direction = select(isUpwards, sample.up, toLight) as Vec3
-    const offset = sample.offset.add(direction.mul(middle)).toConst() as Vec3
+    const height = select(isAbove, above, below.negate()).mul(PROBED_PART)
+    const step = toLight.mul(start.add(end).mul(0.5))
+    const offset = sample.offset
+      .add(select(isAside, sample.up.mul(height), step) as Vec3)
+      .toConst() as Vec3
     const { altitude, up } = field.view.localCoordinates(offset)
     const { distance } = sample
     const extinction = extinctionNearby(field, weather, { offset, altitude, up, distance })
-    found.addAssign(
-      select(
-        isUpwards,
-        vec3(0, 0, extinction),
-        vec3(select(index.equal(int(0)), extinction, 0), extinction.mul(end.sub(start)), 0)
-      )
-    )
+    const isFirst = index.equal(int(0))
+    const along = vec4(select(isFirst, extinction, 0), extinction.mul(end.sub(start)), 0, 0)
+    const aside = select(isAbove, vec4(0, 0, extinction, 0), vec4(0, 0, 0, extinction))
+    found.addAssign(select(isAside, aside, along))
   })
   const beyond = sample.offset.add(toLight.mul(probed)).toConst() as Vec3
   const { toLight: far, through: all, stretch, inMap } = sampleShadows(shadows, beyond)
@@ -128,11 +135,15 @@ export function localDepths(
     .add(depthToLight.add(behind).mul(unmapped))
     .max(depthToLight)
     .toConst() as Float
+  const near = found.x.mul(MEAN[0]).toConst()
+  const likelyBelow = below.mul(found.x).mul(layered.add(1).mul(LIKELY_BELOW)).toConst() as Float
+  const probedBelow = below.mul(found.w.mul(MEAN[1]).add(near))
   return {
     toLight: depthToLight,
     through,
-    above: above.mul(found.x.mul(ABOVE / 2).add(found.z.mul(0.5))),
-    below: below.mul(found.x).mul(layered.add(1).mul(BELOW)),
+    above: above.mul(found.z.mul(MEAN[1]).add(near)),
+    below: mix(probedBelow, likelyBelow, layered),
+    likelyBelow,
     filled: all.mul(all).div(stretch.mul(density).max(1e-6)).add(unmapped)
   }
 }
