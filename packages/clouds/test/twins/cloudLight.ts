@@ -194,11 +194,11 @@ export function cloudAmbient(
     return Math.max(s00 + s10 * cos + (s20 * (3 * cos ** 2 - 1)) / 2, 0)
   }
   const slab = { sky: share(above, cosView), ground: share(below, -cosView) }
-  const [open, shut] = [depthAbove, depthBelow].map(x =>
-    Math.exp(-skyShareFit.decay * Math.max(x, 0))
-  )
-  const { tops, slope, thinSlope } = skyShareFit
-  const isolated = 0.5 + tops * (open - shut) + cosView * (slope + thinSlope * (open + shut))
+  const [high, low] = [Math.max(depthAbove, 0), Math.max(depthBelow, 0)]
+  const { decay, face, power, slope, thinSlope } = skyShareFit
+  const tilt = slope + thinSlope * Math.exp(-decay * (high + low))
+  const logit = power * Math.log((low + face) / (high + face)) + tilt * cosView
+  const isolated = 1 / (1 + Math.exp(-logit))
   const both = slab.sky + slab.ground
   const sky = layered * slab.sky + (1 - layered) * both * isolated
   return { sky, ground: both - sky }

@@ -154,7 +154,14 @@ export function cloudAmbientShares(
   const [high, low] = [depthAbove, depthBelow].map(depth => depth.max(0).toConst() as Float)
   const slope = high.add(low).mul(-fit.decay).exp().mul(fit.thinSlope).add(fit.slope)
   const ratio = low.add(fit.face).div(high.add(fit.face))
-  const share = ratio.log().mul(fit.power).add(slope.mul(cosView)).negate().exp().add(1).reciprocal()
+  const share = ratio
+    .log()
+    .mul(fit.power)
+    .add(slope.mul(cosView))
+    .negate()
+    .exp()
+    .add(1)
+    .reciprocal()
   const both = sky.add(ground).toConst()
   const skyShare = mix(sky, both.mul(share), layered.oneMinus().mul(resolved)).toConst()
   return { sky: skyShare, ground: both.sub(skyShare).toConst() }
