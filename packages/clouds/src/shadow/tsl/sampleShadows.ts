@@ -1,7 +1,8 @@
 import type { Vector2, Vector3, Vector4 } from 'three'
-import { If, float, mix, vec2, vec3, vec4 } from 'three/tsl'
+import { If, float, log2, mix, vec2, vec3, vec4 } from 'three/tsl'
 import type { UniformNode } from 'three/webgpu'
 import type { Float, LevelTexture, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import { CASCADE_SIZE } from '../CascadeState'
 import { CASCADE_RATIO, MAXIMUM_DISTANCE } from './shadowRay'
 
 /** Uniforms to look a cascade up: rows that turn (offset, 1) into u, v and height over the plane in half widths. */
@@ -54,6 +55,15 @@ const MARGIN = 0.02
  * (*Shadows*).
  */
 const FADE = 0.1
+
+/**
+ * Turns per octave of the distance from the camera by which places along a ray towards the light, or away from it, are moved
+ * across a texel, up to half of one to either side: such a ray stays in few texels, whose edges would show as blocks (*shower* under a low sun).
+ */
+const TURNS = [3.1, 5.3] as const
+
+/** Sine of the angle between ray and light from which on places are not moved: they are in many texels anyway. */
+const MOVED_WITHIN = 0.3
 
 /** Heights over the plane at which rays of the next narrower cascade end, in half widths of this one. */
 const NARROWER_END = MAXIMUM_DISTANCE / CASCADE_RATIO
@@ -151,12 +161,24 @@ export function sampleShadowsAlong(
       last: last.x.min(last.y).min(last.z).mul(isCast).toConst()
     }
   })
+  const [{ u, v }] = cascades
+  const sine = vec2(u.xyz.dot(direction), v.xyz.dot(direction))
+    .length()
+    .div(u.xyz.length().max(1e-12))
+  const moved = sine.div(-MOVED_WITHIN).add(1).max(0)
+  const texel = scale.div(CASCADE_SIZE).mul(moved).toConst() as Vec2
   return distance => {
+    const aside = log2(distance.max(1))
+      .mul(vec2(...TURNS))
+      .fract()
+      .sub(0.5)
+      .mul(texel)
+      .toConst() as Vec2
     const inAtlas = vec4(0).toVar() as Vec4 & { assign: (n: Vec4) => void }
     // From the widest to the narrowest: the last that fits stays.
     for (const { start, slope, first, last } of stretches.toReversed()) {
       If(distance.greaterThan(first).and(distance.lessThan(last)), () => {
-        inAtlas.assign(vec4(start.add(slope.mul(distance)), 1))
+        inAtlas.assign(vec4(start.add(slope.mul(distance)).add(vec3(aside, 0)), 1))
       })
     }
     return depthsAt(map, inAtlas)
