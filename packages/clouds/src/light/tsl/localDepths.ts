@@ -32,7 +32,7 @@ const FEWEST_STEPS = 2
  * as shallow, too bright from the sky (*Storm*).
  */
 const PROBED_PART = 0.35
-/** Means of extinction up to there and beyond: parts of it near the place and of the probed one. */
+/** Mean extinction up to the top or the base: parts of that near the place, and of that at the probe. */
 const MEAN = [PROBED_PART / 2, 0.5] as const
 
 /**
@@ -61,7 +61,7 @@ export interface LocalDepths {
   through: Float
   above: Float
   below: Float
-  /** Depth below an isolated cloud's place as `lateralLeakFit` knows it: as dense as near the place. */
+  /** Depth below that is likely of itself, without a probe: `lateralLeakFit` was found with it. */
   likelyBelow: Float
   /** Mean extinction on that ray, from end to end of its clouds, over the layers'; above 1 where there is no map. */
   filled: Float
