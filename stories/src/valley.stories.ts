@@ -83,7 +83,8 @@ const meta: Meta<ValleyArgs> = {
     precipitation: part('Rain and snow'),
     flashes: {
       ...part('Lightning'),
-      description: 'In storms. Off at first: flashes may harm people with photosensitive epilepsy'
+      description:
+        'In storms; makes the scene anew. Off at first: flashes may harm people with photosensitive epilepsy'
     },
     moon: part('Moon'),
     stars: part('Stars and Milky Way'),

@@ -1,9 +1,11 @@
 import { AirStyle, Airglow, MilkyWay, Moon, Stars, SunFlare } from '@welkin/atmosphere'
+import { Texture } from 'three'
 import type { InstancedMesh, Object3D } from 'three'
-import type { WebGPURenderer } from 'three/webgpu'
+import type { TextureNode, WebGPURenderer } from 'three/webgpu'
 import { expect, it, vi } from 'vitest'
 import { openingState } from '../src/valley/openingState'
 import { Valley, type ValleyState } from '../src/valley/Valley'
+import type { ValleyFactors } from '../src/valleyFactors'
 
 // Nothing is drawn: `npm run bench -- --only switches` compares pictures, on a GPU.
 const renderer = { initRenderTarget: () => undefined } as unknown as WebGPURenderer
@@ -21,6 +23,16 @@ function nodeTypes(): Set<string> {
     types.add((node.constructor as unknown as { type: string }).type)
   })
   return types
+}
+
+/** Names of the textures that the pipeline reads: a target's, and which of its textures. */
+function textureNames(): Set<string> {
+  const names = new Set<string>()
+  pipeline.outputNode.traverse(node => {
+    const { value } = node as Partial<TextureNode>
+    if (value instanceof Texture) names.add(value.name)
+  })
+  return names
 }
 
 const visible = (): Object3D[] => {
@@ -43,8 +55,11 @@ const strengths: Partial<Record<keyof ValleyState, () => number>> = {
   flare: () => Math.max(layerOf(SunFlare).innerStrength, layerOf(SunFlare).outerStrength),
   environment: () => scene.environmentIntensity,
   occlusion: () => Number(air.scenePass.contextNode !== null),
+  localExposure: () => Number(textureNames().has('LocalExposure.0')),
   bloom: () => Number(nodeTypes().has('BloomNode')),
-  depthOfField: () => Number(nodeTypes().has('DepthOfFieldNode'))
+  depthOfField: () => Number(nodeTypes().has('DepthOfFieldNode')),
+  // Bloom, which is on, reads the blurred picture.
+  motionBlur: () => Number(textureNames().has('MotionBlur.0'))
 }
 
 it.each(Object.entries(strengths))('%s is switched on and off', (name, strength) => {
@@ -58,6 +73,36 @@ it.each(Object.entries(strengths))('%s is switched on and off', (name, strength)
   expect(strength()).toBe(0)
   valley.set({ [name]: true }, true)
   expect(strength()).toBe(on)
+})
+
+/** Artistic factors, and what each of them sets. */
+const factors: Record<keyof ValleyFactors, () => number> = {
+  hazeStrength: () => layerOf(AirStyle).haze,
+  twilightSaturation: () => layerOf(AirStyle).twilightSaturation,
+  shaftStrength: () => air.shafts.strength,
+  starlight: () => layerOf(Stars).intensity + layerOf(MilkyWay).intensity,
+  airglowStrength: () => layerOf(Airglow).intensity,
+  earthshine: () => layerOf(Moon).earthshine,
+  ambient: () => air.clouds.ambient,
+  purkinjeShift: () => air.exposure.purkinjeShift
+}
+
+it.each(Object.entries(factors))('%s is a factor, alone', (name, value) => {
+  valley.set({ ...openingState, quality: 'low', [name]: 1 }, true)
+  const others = Object.values(factors).filter(other => other !== value)
+  const [one, before] = [value(), others.map(other => other())]
+  expect(one).toBeGreaterThan(0)
+  valley.set({ [name]: 0.25 })
+  expect(value()).toBeCloseTo(0.25 * one, 9)
+  expect(others.map(other => other())).toEqual(before)
+})
+
+it('opens as physics has it', () => {
+  // Sight by night is a matter of the eye.
+  const physical = (Object.keys(factors) as (keyof ValleyFactors)[]).filter(
+    name => name !== 'purkinjeShift'
+  )
+  expect(physical.map(name => openingState[name])).toEqual(physical.map(() => 1))
 })
 
 it.each(['trees', 'village', 'water'] as const)('%s go and come', name => {

@@ -37,6 +37,9 @@ const FAR = 160
 /** Blue of vertices in the shade of a crown over their green, at most. */
 const SHADED = 0.12
 
+/** Colour of leaves in the shade over that of their vertices, whose blue only marks them. */
+const SHADE_COLOR = [1, 1, 9] as const
+
 /** Colour of twigs over that of leaves. */
 const TWIG_COLOR = [2.3, 1.35, 4] as const
 
@@ -176,11 +179,13 @@ export function setFoliage(material: NodeMaterial, fallen: Node<'float'> | null 
   const remoteness = smoothstep(FAR / 8, FAR, distance)
   const solid = remoteness.mul(far - near).add(near)
   const hasLeaf = leaf.g.greaterThan(solid)
-  const isSolid = isBark.or(isShade)
+  const brightness = leaf.r.mul(1.25).add(0.22).toConst()
+  const shade = vec3(...SHADE_COLOR).mul(brightness)
+  const painted = isBark.select(vec3(1), isShade.select(shade, vec3(brightness)))
   material.normalNode = normalViewGeometry
   if (fallen === null) {
-    material.maskNode = hasLeaf.or(isSolid)
-    material.colorNode = isSolid.select(1, leaf.r.mul(1.25).add(0.22))
+    material.maskNode = hasLeaf.or(isShade).or(isBark)
+    material.colorNode = painted
     return
   }
   // Leaves fall one by one. Twigs are finer than pixels from near by.
@@ -188,8 +193,8 @@ export function setFoliage(material: NodeMaterial, fallen: Node<'float'> | null 
   const isBare = noise.lessThan(fallen)
   const twigs = leaf.b.greaterThan(mix(float(TWIG_EDGE), noise.clamp(...TWIG_NOISE), remoteness))
   material.maskNode = isBare.select(twigs.and(isShade.not()), hasLeaf.or(isShade)).or(isBark)
-  const leafy = autumnColor(fallen).mul(leaf.r.mul(1.25).add(0.22))
-  material.colorNode = isSolid.select(vec3(1), leafy)
+  const isLeaf = isBark.or(isShade).not()
+  material.colorNode = isLeaf.select(autumnColor(fallen), vec3(1)).mul(painted)
 }
 
 /** Gives a material of trees that have shed all leaves their twigs, as {@link setFoliage} does, alike from near and far. */

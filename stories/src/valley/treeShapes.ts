@@ -18,8 +18,9 @@ const NEEDLES = [0.03, 0.048, 0.02] as const
 export const LEAVES = [0.055, 0.084, 0.027] as const
 export const BARK = [0.056, 0.048, 0.04] as const
 
-/** Leaves in the shade of a crown: with next to no blue, by which they have no gaps. */
-export const SHADE = [0.021, 0.034, 0.002] as const
+/** Needles and leaves in the shade of a crown: with next to no blue, by which they have no gaps. */
+const SHADE = [0.022, 0.0356, 0.0002] as const
+const LEAVES_SHADE = [0.036, 0.058, 0.002] as const
 
 /** Golden angle, by which branches turn about a trunk [rad]. */
 export const GOLDEN = 2.4
@@ -41,7 +42,7 @@ export function painted(geometry: BufferGeometry, [r, g, b]: Color, shade = 1): 
   return geometry.setAttribute('color', new Float32BufferAttribute(colors, 3))
 }
 
-/** A ball of few faces, lit as round. */
+/** A ball of few faces, lit as round, with a spray of leaves for its picture. */
 export function ball(size: number): BufferGeometry {
   const faces = new IcosahedronGeometry(size, 0)
   faces.deleteAttribute('uv')
@@ -50,11 +51,15 @@ export function ball(size: number): BufferGeometry {
   const { position } = round.attributes
   const normals = Float32Array.from(position.array, value => value / size)
   round.setAttribute('normal', new Float32BufferAttribute(normals, 3))
-  return round.setAttribute(
-    'uv',
-    new Float32BufferAttribute(new Float32Array(2 * position.count), 2)
-  )
+  const places = Array.from({ length: position.count }, (_, i) => [
+    0.25 + (0.2 * position.getX(i)) / size,
+    0.5 + (0.4 * position.getY(i)) / size
+  ])
+  return round.setAttribute('uv', new Float32BufferAttribute(places.flat(), 2))
 }
+
+/** Radius of a clump's dark middle over that of the clump: a larger one shows through its leaves as a ball. */
+const CORE = 0.36
 
 /** Sprays of a clump below which trees are seen from afar: they have no twigs. */
 const FEW = 8
@@ -113,6 +118,7 @@ export function branchedSpruce(whorls: number, branches: number): BufferGeometry
     return needleBranch(1.2 + 8.7 * up, length, turn, 0.55 + 0.5 * up)
   })
   const core = new ConeGeometry(0.5, 8, 5, 1, true).translate(0, 5.2, 0)
+  core.attributes.uv.array.fill(0) // it has no picture
   return mergeGeometries([...parts, painted(core, SHADE), trunk(9.6, 0.2)])
 }
 
@@ -230,7 +236,7 @@ function clump(
     }
     return spray.setAttribute('color', new Float32BufferAttribute(colors, 3))
   })
-  return [...parts, painted(ball(0.42 * size).translate(x, y, z), SHADE)]
+  return [...parts, painted(ball(CORE * size).translate(x, y, z), LEAVES_SHADE)]
 }
 
 /**
