@@ -121,7 +121,8 @@ export function terrainMaterial(
   const along = first.mul(ground.x).add(second.mul(ground.y)).toConst()
   const gradient = along.sub(outward.mul(along.dot(up).div(outward.dot(up)))).toConst() as Vec3
   const cosSlope = gradient.dot(gradient).add(1).inverseSqrt().toConst() as Float
-  const normal = up.sub(gradient).normalize().toConst() as Vec3
+  // The gradient is at right angles to up.
+  const normal = up.sub(gradient).mul(cosSlope).toConst() as Vec3
   const surface = groundSurface(
     {
       grain,
