@@ -77,20 +77,17 @@ export function terrainMaterial(
   material.metalness = 0
   const { stretch, reference, seaLevel, seaVariance, waveTime, pole } = uniforms
 
-  const handed = {
-    place: handedOn<Vec3>('vec3', 'Place'),
-    texels: handedOn<Vec4>('vec4', 'Texels'),
-    blend: handedOn<Vec4>('vec4', 'Blend')
-  }
+  const offset = handedOn<Vec3>('vec3', 'Place')
+  const texels = handedOn<Vec4>('vec4', 'Texels')
+  const blend = handedOn<Vec4>('vec4', 'Blend')
   material.positionNode = Fn(() => {
     const vertex: TileVertex = tileVertex(atlas, uniforms, figure, resolution, detail)
-    handed.place.assign(vertex.place)
-    handed.texels.assign(vec4(vertex.texels, groundZone(vertex.up.dot(pole))))
-    handed.blend.assign(vertex.blend)
+    offset.assign(vertex.place)
+    texels.assign(vec4(vertex.texels, groundZone(vertex.up.dot(pole))))
+    blend.assign(vertex.blend)
     return vertex.position
   })()
 
-  const { place: offset, texels, blend } = handed
   const pages = varying(tilePages(atlas, resolution)).setInterpolation('flat') as unknown as Vec4
   const { width, height } = atlas.surface
   const face = blend.z.round().toConst() as Float
