@@ -13,7 +13,7 @@ export type {
 export { SkyBackgroundNode, skyBackground } from './sky/SkyBackgroundNode'
 export type { SkyBackgroundOptions } from './sky/SkyBackgroundNode'
 export { AerialPerspectiveFogNode, aerialPerspectiveFog } from './sky/AerialPerspectiveFogNode'
-export type { FineMaterial } from './sky/AerialPerspectiveFogNode'
+export type { FineMaterial } from './sky/tsl/lightAtFragment'
 export { airAtVertices } from './sky/tsl/airAtVertices'
 export { AerialPerspectiveNode, aerialPerspective } from './sky/AerialPerspectiveNode'
 export { whereSeen } from './sky/whereSeen'

@@ -1,12 +1,12 @@
 import { DirectionalLight, Vector3 } from 'three'
 import { Fn } from 'three/tsl'
 import { DirectionalLightNode, NodeUpdateType } from 'three/webgpu'
-import type { NodeFrame } from 'three/webgpu'
+import type { NodeBuilder, NodeFrame } from 'three/webgpu'
 import { checkPositive } from '@welkin/geo'
 import type { Atmosphere } from '../Atmosphere'
 import { checkSource, type LightSource } from '../view/LightSource'
 import { linearSRGB } from '../air/tsl/color'
-import { coveredPosition } from '../view/tsl/coveredPosition'
+import { lightAtFragment } from '../sky/tsl/lightAtFragment'
 import { lightTransmittance } from '../transmittance/tsl/transmittance'
 import type { Vec3 } from '../tsl-types'
 import type { ViewNodes } from '../view/ViewNodes'
@@ -90,12 +90,14 @@ export class SunDirectionalLightNode extends DirectionalLightNode {
     this.updateType = NodeUpdateType.RENDER
     const node = this as unknown as { colorNode: Vec3 }
     const tint = node.colorNode
-    node.colorNode = Fn(() => {
-      const { uniforms, transmittance } = this.#view.air
-      const offset = this.#view.toMapped(coveredPosition()).toConst()
-      const { altitude, cosLight } = this.#view.localCoordinates(offset)
-      const sunlight = lightTransmittance(uniforms, transmittance, altitude, cosLight)
-      return linearSRGB(uniforms, sunlight.mul(this.#view.source.irradiance)).mul(tint)
+    node.colorNode = Fn(({ material }: NodeBuilder) => {
+      const view = this.#view
+      const { uniforms, transmittance } = view.air
+      return lightAtFragment(material, view, 1, position => {
+        const { altitude, cosLight } = view.localCoordinates(view.toMapped(position))
+        const sunlight = lightTransmittance(uniforms, transmittance, altitude, cosLight)
+        return [linearSRGB(uniforms, sunlight.mul(view.source.irradiance)).mul(tint)]
+      })[0]
     })()
   }
 

@@ -3,15 +3,8 @@ import { Fn, output, vec4 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
 import type { Atmosphere } from '../Atmosphere'
 import { AtmosphereNode } from '../view/AtmosphereNode'
-import { coveredPosition } from '../view/tsl/coveredPosition'
 import { aerialPerspectiveTo } from './tsl/aerialPerspective'
-import type { airAtVertices } from './tsl/airAtVertices'
-
-/** Material whose triangles are small beside their distance everywhere, such as a terrain's. */
-export interface FineMaterial {
-  /** `airAtVertices` has the effect of clear air found at vertices, not pixels, within 200 to 1,000 km by the viewer's height. */
-  readonly airAtVertices?: typeof airAtVertices
-}
+import { lightAtFragment } from './tsl/lightAtFragment'
 
 /**
  * Aerial perspective as a scene's fog: every material with `fog`, opaque or transparent, dims and
@@ -33,9 +26,9 @@ export class AerialPerspectiveFogNode extends AtmosphereNode {
 
   override setup(_builder: NodeBuilder): Node {
     return Fn(({ material }: NodeBuilder) => {
-      const { transmittance, inScatter } =
-        (material as FineMaterial).airAtVertices?.(this.view) ??
-        aerialPerspectiveTo(this.view, coveredPosition())
+      const [transmittance, inScatter] = lightAtFragment(material, this.view, 2, position =>
+        Object.values(aerialPerspectiveTo(this.view, position))
+      )
       return vec4(output.rgb.mul(transmittance).add(inScatter), output.a)
     })()
   }

@@ -21,7 +21,7 @@ const FADE_FRAMES = 10
 const LEAP = 4
 
 /** Longest side of a cell of the finest tiles [m]. */
-const FINEST_CELL = 0.6
+const FINEST_CELL = 1.2
 
 /** Tiles that a viewer sees, and their pages: those that are missing are drawn, some in a frame. */
 export class PagedTiles {

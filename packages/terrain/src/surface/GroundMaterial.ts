@@ -26,7 +26,7 @@ const GROUND_FRESNEL = 0.04
 /** Unit vector to the viewer, in view space; three's own would be one more varying. */
 export const viewDirection = (): Vec3 =>
   Fn(({ camera }: NodeBuilder) =>
-    (camera as unknown as { isOrthographicCamera?: boolean }).isOrthographicCamera === true
+    (camera as unknown as { isOrthographicCamera?: boolean }).isOrthographicCamera
       ? vec3(0, 0, 1)
       : coveredPosition().negate().normalize()
   )().toConst()

@@ -77,20 +77,17 @@ export function terrainMaterial(
   material.metalness = 0
   const { stretch, reference, seaLevel, seaVariance, waveTime, pole } = uniforms
 
-  const handed = {
-    place: handedOn<Vec3>('vec3', 'Place'),
-    texels: handedOn<Vec4>('vec4', 'Texels'),
-    blend: handedOn<Vec4>('vec4', 'Blend')
-  }
+  const offset = handedOn<Vec3>('vec3', 'Place')
+  const texels = handedOn<Vec4>('vec4', 'Texels')
+  const blend = handedOn<Vec4>('vec4', 'Blend')
   material.positionNode = Fn(() => {
     const vertex: TileVertex = tileVertex(atlas, uniforms, figure, resolution, detail)
-    handed.place.assign(vertex.place)
-    handed.texels.assign(vec4(vertex.texels, groundZone(vertex.up.dot(pole))))
-    handed.blend.assign(vertex.blend)
+    offset.assign(vertex.place)
+    texels.assign(vec4(vertex.texels, groundZone(vertex.up.dot(pole))))
+    blend.assign(vertex.blend)
     return vertex.position
   })()
 
-  const { place: offset, texels, blend } = handed
   const pages = varying(tilePages(atlas, resolution)).setInterpolation('flat') as unknown as Vec4
   const { width, height } = atlas.surface
   const face = blend.z.round().toConst() as Float
@@ -121,7 +118,8 @@ export function terrainMaterial(
   const along = first.mul(ground.x).add(second.mul(ground.y)).toConst()
   const gradient = along.sub(outward.mul(along.dot(up).div(outward.dot(up)))).toConst() as Vec3
   const cosSlope = gradient.dot(gradient).add(1).inverseSqrt().toConst() as Float
-  const normal = up.sub(gradient).normalize().toConst() as Vec3
+  // The gradient is at right angles to up.
+  const normal = up.sub(gradient).mul(cosSlope).toConst() as Vec3
   const surface = groundSurface(
     {
       grain,

@@ -16,8 +16,6 @@ const [TILE_COLUMNS, TILE_ROWS] = DIFFUSE_LAYOUT
  */
 const INSET = 1 / 1024
 
-type SixTiles = [Vec4, Vec4, Vec4, Vec4, Vec4, Vec4]
-
 /** asinh of the light's cosine μ_s, as the table spaces its columns: they crowd about the horizon. */
 export function compressCosine(cosLight: Float): Float {
   return asinh(cosLight.sub(diffuseLightCosine.centre).div(diffuseLightCosine.width).toConst())
@@ -39,29 +37,21 @@ function altitudeRow({ thickness }: AtmosphereUniforms, altitude: Float): Float 
 }
 
 /**
- * A function that reads a tile of the diffuse-light table at an altitude and angle of the light; `next` is how many tiles farther in its row, which may
- * differ by pixel.
+ * A function that reads a tile of the diffuse-light table, by its column and row, at an altitude and angle of the light; the column may differ by pixel.
  */
 export function diffuseLightReader(
   uniforms: AtmosphereUniforms,
   table: Table,
   altitude: Float,
   cosLight: Float
-): (tile: number, next?: Float) => Vec4 {
+): (column: Float | number, row: number) => Vec4 {
   const uv = vec2(lightColumn(cosLight), altitudeRow(uniforms, altitude))
     .mul(vec2(COLUMNS - 1 - 2 * INSET, ROWS - 1 - 2 * INSET))
     .add(0.5 + INSET)
     .div(vec2(COLUMNS * TILE_COLUMNS, ROWS * TILE_ROWS))
     .toConst()
-  return (tile, next = float(0)) =>
-    table.sample(
-      uv.add(
-        vec2(
-          next.add(tile % TILE_COLUMNS).div(TILE_COLUMNS),
-          Math.floor(tile / TILE_COLUMNS) / TILE_ROWS
-        )
-      )
-    )
+  return (column, row) =>
+    table.sample(uv.add(vec2(column, row).div(vec2(TILE_COLUMNS, TILE_ROWS)))).toConst()
 }
 
 /**
@@ -78,10 +68,14 @@ export function diffuseMoments(
   cosLight: Float
 ): Moments<Vec4> {
   const read = diffuseLightReader(uniforms, table, altitude, cosLight)
-  const [m00, m10, m11, m20, m21, m22] = [0, 1, 2, 3, 4, 5].map(tile =>
-    read(tile).toConst()
-  ) as unknown as SixTiles
-  return { m00, m10, m11, m20, m21, m22 }
+  return {
+    m00: read(0, 0),
+    m10: read(1, 0),
+    m11: read(0, 1),
+    m20: read(1, 1),
+    m21: read(0, 2),
+    m22: read(1, 2)
+  }
 }
 
 /**
@@ -95,5 +89,5 @@ export function groundIrradiance(
   table: Table,
   cosLight: Float
 ): Vec4 {
-  return diffuseLightReader(uniforms, table, float(0), cosLight)(6).div(RADIANCE_SCALE)
+  return diffuseLightReader(uniforms, table, float(0), cosLight)(0, 3).div(RADIANCE_SCALE)
 }

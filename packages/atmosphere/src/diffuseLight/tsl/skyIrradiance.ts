@@ -43,7 +43,7 @@ export function skyIrradiance(
   const m00 = moments.m00.mul(rest)
   return applyMoments({ ...moments, m00 }, basis, COSINE_1, COSINE_2)
     .mul(Math.PI)
-    .add(read(6, cosNormal.lessThan(0).select(1, 0)).mul(square))
+    .add(read(cosNormal.lessThan(0).select(1, 0), 3).mul(square))
     .max(0)
     .div(RADIANCE_SCALE)
 }
@@ -63,5 +63,5 @@ export function horizontalIrradiance(
   cosLight: Float
 ): { up: Vec4; down: Vec4 } {
   const read = diffuseLightReader(uniforms, table, altitude, cosLight)
-  return { up: read(6).div(RADIANCE_SCALE), down: read(7).div(RADIANCE_SCALE) }
+  return { up: read(0, 3).div(RADIANCE_SCALE), down: read(1, 3).div(RADIANCE_SCALE) }
 }

@@ -7,12 +7,7 @@ import { distanceToTop } from '../../air/tsl/boundary'
 
 const [WIDTH, HEIGHT] = TRANSMITTANCE_SIZE
 
-/** H, the distance from a point on the ground to the top of the air along its horizon [m]. */
-function horizonChord({ bottomRadius, thickness }: AtmosphereUniforms): Float {
-  return thickness.mul(bottomRadius.mul(2).add(thickness)).sqrt()
-}
-
-/** ρ, the distance to the horizon [m]. */
+/** ρ, the distance to the horizon; at the top of the air H, that along the ground's horizon to the top [m]. */
 function horizonDistance({ bottomRadius }: AtmosphereUniforms, altitude: Float): Float {
   return altitude.mul(bottomRadius.mul(2).add(altitude)).max(0).sqrt()
 }
@@ -36,7 +31,7 @@ export function transmittanceUV(
   cosView: Float
 ): Vec2 {
   const { bottomRadius, thickness } = uniforms
-  const chord = horizonChord(uniforms).toConst()
+  const chord = horizonDistance(uniforms, thickness).toConst()
   const horizon = horizonDistance(uniforms, altitude).toConst()
   const distance = distanceToTop(altitude, cosView, bottomRadius, thickness)
   const shortest = thickness.sub(altitude)
@@ -65,7 +60,7 @@ export function transmittanceRay(
     .div(vec2(WIDTH - 1, HEIGHT - 1))
     .clamp()
     .toConst()
-  const chord = horizonChord(uniforms).toConst()
+  const chord = horizonDistance(uniforms, thickness).toConst()
   const horizon = chord.mul(y).toConst()
   // ρ² = h (2 r_bottom + h), solved for h without cancellation.
   const square = horizon.mul(horizon).toConst()

@@ -124,7 +124,7 @@ export function groundClimate(place: GroundPlace, seaLevel: Float): GroundClimat
   const overSea = height.sub(seaLevel).toConst() as Float
   // Ground that falls towards the equator has a normal nearer to it than up is.
   const sunny = northing.sub(place.normal.dot(pole)).mul(northing.sign()) as unknown as Float
-  const snowLine = zone.x.add(climate.mul(DRY_SNOW)).add(sunny.mul(SUNNY_SNOW)).toConst()
+  const snowLine = zone.x.add(climate.mul(DRY_SNOW)).add(sunny.mul(SUNNY_SNOW))
   const overSnow = height.sub(snowLine).toConst() as Float
   const overTrees = overSnow.add(TREES_BELOW).add(patch.mul(TREES_PATCH)).toConst() as Float
   const dryness = zone.y.add(climate.mul(DRY_CLIMATE)).clamp(0, 1).toConst() as Float
@@ -162,7 +162,6 @@ export function groundRules(
     .sub(OPEN)
     .sub(lowland.mul(LOWLAND_DRYNESS))
     .add(smoothstep(...SLOPES, cosSlope.oneMinus()).mul(SLOPE_WOODS))
-    .toConst()
   const woods = smoothstep(
     lost.add(MOIST).negate(),
     lost,

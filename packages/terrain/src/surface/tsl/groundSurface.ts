@@ -2,7 +2,6 @@ import { Fn, If, float, mix, smoothstep, vec3 } from 'three/tsl'
 import type { Float, Vec3 } from '../../tsl-types'
 import type { GroundMaps } from '../maps/GroundMaps'
 import { grainAt, leaning, type GroundDetail } from './grain'
-import type { MappedGround } from './mappedGround'
 import {
   groundClimate,
   groundRules,
@@ -10,12 +9,10 @@ import {
   type GroundLayers,
   type GroundPlace
 } from './groundRules'
+import { ripples } from './ripples'
 
 /** Dry grass per climate: steppe is straw, wet country green. Less: land from orbit is of one colour (*Terrain*). */
 const DRY_GRASS = 1.5
-
-/** Slopes of sand over those of stones [–]. 0.05: a beach is of flat shards (*Terrain*, still shore). */
-const SAND_BUMP = 0.02
 
 /** Mean square of the slopes of stones. */
 const GRAIN_VARIANCE = 0.3
@@ -47,7 +44,7 @@ export interface GroundSurface {
   /** Longer side of the pixel on the ground, and differences of height within it [m]. */
   readonly footprint: Float
   readonly spread: Float
-  /** Roughness as of three's materials. */
+  /** Roughness as of three's materials, which clamp it to 1. */
   readonly roughness: Float
   /** Gradient of stones, along the ground [–]. */
   readonly grain: Vec3
@@ -100,7 +97,7 @@ export function groundSurface(
     .add(smoothstep(-900, 200, overTrees).mul(0.2))
     .max(smoothstep(0.36, 0.6, blade).mul(0.8))
   // Heather and dwarf shrubs lie in patches, more of them towards the tree line.
-  const high = smoothstep(-900, 100, overTrees).toConst()
+  const high = smoothstep(-900, 100, overTrees)
   const heath = smoothstep(-0.1, 0.35, spots.sub(patch.mul(0.9)).add(high.mul(0.4)).sub(0.4))
   const turf = mix(mix(GRASS, STRAW, straw), HEATH, heath.mul(0.65))
   const blades = turf.mul(light.add(brush.mul(0.35)).add(1).max(0.2))
@@ -116,25 +113,24 @@ export function groundSurface(
   const turfed = smoothstep(-0.45, 0.3, patch.sub(overTrees.mul(1 / 2500)).add(stone.mul(-0.5)))
   const stones = SCREE.mul(tone.mul(0.6).add(1).clamp(0.4, 1.3))
   const scree = mix(stones, TUNDRA, turfed.mul(0.75)).mul(stony)
-  const tangle = blade.add(boulder.mul(0.3)).toConst() as Float
-  const sand = SAND.mul(stone.mul(0.03).add(tuft.mul(0.06)).add(patch.mul(0.35)).add(1))
+  const tangle = blade.add(boulder.mul(0.3))
+  const sand = SAND.mul(tuft.mul(0.06).add(patch.mul(0.35)).add(1))
   const wet = smoothstep(0, 1.2, overSea.add(stone.mul(0.06))).toConst()
   const colors = { snow: SNOW, rock, sand, scree, desert, forest, grass: meadow }
   const mapped = maps?.groundAt(place, layers, colors)
   /** A value as made up, and that of maps where there are any. */
-  const either = (own: Float, ofMaps: (ground: MappedGround) => Float): Float =>
-    mapped === undefined ? own : mix(own, ofMaps(mapped), mapped.share)
+  const either = (own: Float, ofMaps: Float = float(0)): Float =>
+    mapped ? mix(own, ofMaps, mapped.share) : own
   const made = mapped?.color ?? layered(layers, colors, [tone, stony, light, shrubs])
   const dry = made.mul(wet.mul(0.45).add(0.55))
 
   // Stones stand out of rock and scree, hardly out of grass, sand and snow.
   const stoniness = mix(bareness.mul(0.8).add(dryness.mul(0.15)).add(0.03), float(0.9), bare)
-  const ownBump = mix(float(SAND_BUMP), stoniness, inland.max(bare)).mul(snow.mul(-0.96).add(1))
-  const bump = either(ownBump, () => float(0)).toConst()
+  const bump = either(stoniness.mul(inland.max(bare)).mul(snow.mul(-0.96).add(1))).toConst()
   const ownRough = mix(wet.mul(0.35).add(0.6), 0.75, snow)
-  const rough = either(ownRough, ({ roughness }) => roughness.mul(wet.mul(0.37).add(0.63)))
+  const rough = either(ownRough, mapped?.roughness.mul(wet.mul(0.37).add(0.63)))
   // Slopes that are smaller than a pixel roughen it: α² grows by twice their variance (Kaplanyan et al. 2016).
-  const roughSquare = rough.mul(rough).toConst()
+  const roughSquare = rough.mul(rough)
   const alpha = roughSquare.mul(roughSquare).add(
     bump
       .mul(bump)
@@ -156,15 +152,16 @@ export function groundSurface(
   const slopes = grain
     .gradient(bump, bump.mul(bareness.max(bare).mul(0.6)))
     .add(leaning(grain.canopySlope.mul(raised)))
+    .add(ripples(place.offset, spots, grain.footprint).mul(either(inland.max(bare).oneMinus())))
   return {
     tangle,
     detail: mix(light.mul(0.8), stone.mul(0.45), bareness.max(bare)).add(1),
     footprint: grain.footprint,
     spread,
     color: dry,
-    roughness: alpha.sqrt().sqrt().min(1),
-    grain: mapped === undefined ? slopes : slopes.add(mapped.slope.mul(mapped.share)),
-    occlusion: either(occlusion, ground => ground.occlusion)
+    roughness: alpha.sqrt().sqrt(),
+    grain: mapped ? slopes.add(mapped.slope.mul(mapped.share)) : slopes,
+    occlusion: either(occlusion, mapped?.occlusion)
   }
 }
 

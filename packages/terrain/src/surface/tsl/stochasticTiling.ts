@@ -92,8 +92,12 @@ export function tilingVertices(reference: Vec3, offset: Vec3, cells: number): Ti
     const threshold = mix(mix(2, most, isOne), mix(middle, 0, isThree), isTwo)
     return step(threshold, part)
   }
-  const cellsOfReference = reference.mul(cells)
-  const origin = ivec3(cellsOfReference.add(sum(cellsOfReference).div(3)).round()).toConst()
+  // Whole numbers, exact in float32: so is their sum with a vertex.
+  const origin = reference
+    .mul(3)
+    .add(sum(reference))
+    .mul(cells / 3)
+    .toConst()
   const first = nearest.sub(left).toConst() as Float
   const weight = vec2(first, next.sub(left).sub(first.mul(LEAST)).max(0)).toConst() as Vec2
   const square = weight.mul(weight).toConst() as Vec2
@@ -102,7 +106,7 @@ export function tilingVertices(reference: Vec3, offset: Vec3, cells: number): Ti
     const away = skewed.sub(vertex).toConst() as Vec3
     return {
       away: away.sub(sum(away).div(6)).mul(size).toConst(),
-      random: latticeGradient(uvec3(ivec3(vertex).add(origin))).toConst()
+      random: latticeGradient(uvec3(ivec3(vertex.add(origin)))).toConst()
     }
   }
   const shares = square.mul(square.dot(square).max(1e-9).inverseSqrt()).toConst() as Vec2
@@ -146,6 +150,8 @@ export function pieceOf(
   return node.level(level).mul(2).sub(1)
 }
 
+type Variable = Vec3 & { assign(value: Vec3): void }
+
 /** Sine of the slope from which on pictures lie on a tilted plane, and sine and cosine of its tilt: of 55°. */
 const STEEP = 0.53
 const SIN_TILT = 0.82
@@ -172,21 +178,13 @@ export function frameNear(normal: Vec3, up: Vec3, axis: Vec3): { tangent: Vec3; 
   const north = up.cross(east).toConst() as Vec3
   const level = vec2(normal.dot(east), normal.dot(north)).toConst() as Vec2
   const sine = level.length().toConst() as Float
-  const isSteep = step(STEEP, sine).toConst() as Float
-  const eighth = level
-    .mul(sine.max(1e-6).reciprocal().mul(EIGHTHS))
-    .round()
-    .add(vec2(1e-6, 0))
-    .normalize()
-  // To the north where it is flat: along the axes.
-  const azimuth = mix(vec2(0, 1), eighth, isSteep).toConst() as Vec2
-  const downhill = east.mul(azimuth.x).add(north.mul(azimuth.y)).toConst() as Vec3
-  const rise = isSteep.mul(SIN_TILT)
-  return {
-    tangent: downhill.cross(up).toConst(),
-    bitangent: downhill
-      .mul(mix(1, COS_TILT, isSteep))
-      .sub(up.mul(rise))
-      .toConst()
-  }
+  const tangent = east.toVar() as unknown as Variable
+  const bitangent = north.toVar() as unknown as Variable
+  If(sine.greaterThan(STEEP), () => {
+    const azimuth = level.mul(sine.reciprocal().mul(EIGHTHS)).round().normalize().toConst() as Vec2
+    const downhill = east.mul(azimuth.x).add(north.mul(azimuth.y)).toConst() as Vec3
+    tangent.assign(downhill.cross(up))
+    bitangent.assign(downhill.mul(COS_TILT).sub(up.mul(SIN_TILT)))
+  })
+  return { tangent, bitangent }
 }
