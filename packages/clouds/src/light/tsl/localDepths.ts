@@ -99,7 +99,7 @@ export function localDepths(
   const count = asked.min(seen).toInt().toConst() as Int
   // Decks have no undersides but their own.
   const isIsolated = layered.lessThan(1)
-  const probes = count.add(select(isIsolated, int(2), int(1)) as Int)
+  const probes = count.add(select(isIsolated, int(2), int(1)))
   // The density function is inlined once for all directions: shaders stay short.
   loop('probe', probes, index => {
     const isAside = index.greaterThanEqual(count).toConst()
