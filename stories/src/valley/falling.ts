@@ -15,7 +15,7 @@ import type { Weather } from './weather'
 /** Seconds of drying and wetting in one second on the clock. */
 const HASTE = 60
 /** Drops and flakes of a class of size that are drawn, at most: farther off each stands for more. */
-const PARTICLES = { rain: 12_288, snow: 20_480 }
+const PARTICLES = { rain: 8192, snow: 20_480 }
 /** Water of rain, and of snow, that lies where weather was before the scene began [mm]. */
 const FALLEN = { rain: 0.5, snow: 12 }
 
