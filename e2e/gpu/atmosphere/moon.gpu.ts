@@ -211,6 +211,39 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
+gpuTest(
+  'air takes up the light of a full moon at dusk without a step',
+  async t => {
+    const renderer = await t.createRenderer({ width: 64, height: 64 })
+    // Where moonlit air begins.
+    const atmosphere = new Atmosphere().setSunAngles(-2.02, 270)
+    const camera = new PerspectiveCamera(60, 1, 1, 1e6)
+    camera.position.y = 2
+    const direction = new Vector3(0.94, 0.34, 0)
+    camera.lookAt(camera.position.clone().add(new Vector3(0.94, 0.34, 0.1)))
+    camera.updateMatrixWorld()
+    const drawWith = async (lightsAir: boolean): Promise<Picture> => {
+      const luna = moon({ direction, phase: 0.5, mapSize: 16, flare: noFlare, lightsAir })
+      atmosphere.add(luna)
+      const picture = await drawForward(renderer, new Scene(), camera, atmosphere)
+      luna.dispose()
+      return picture
+    }
+    const [without, lit] = [await drawWith(false), await drawWith(true)]
+    let most = 0
+    for (let y = 0; y < 64; y++) {
+      for (let x = 0; x < 64; x++) {
+        const before = luminance(without.at(x, y))
+        most = Math.max(most, luminance(lit.at(x, y)) / before - 1)
+      }
+    }
+    t.note(`${(100 * most).toFixed(2)} % at most`)
+    expectTrue(most > 0 && most < 0.01, `the sky grows by ${most}`)
+    atmosphere.dispose()
+  },
+  { backends: ['webgpu'] }
+)
+
 gpuTest('hides the sun and dims light, sky and haze in an eclipse', async t => {
   const size = { width: 64, height: 64 }
   const renderer = await t.createRenderer(size)

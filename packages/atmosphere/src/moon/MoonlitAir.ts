@@ -11,8 +11,8 @@ import { viewNodes, type ViewNodes } from '../view/ViewNodes'
 import type { ViewUniforms } from '../view/ViewUniforms'
 import { number } from '../uniforms'
 
-/** Cosine of the sun's zenith angle above which its light in the air masks the moon's: the horizon. */
-const MAX_COS_SUN = 0
+/** Cosine of the sun's zenith angle above which its light in the air masks the moon's: 2° down. Less: the sky steps at dusk. */
+const MAX_COS_SUN = -0.035
 
 /** Cosine of the moon's zenith angle below which its light reaches no air that is seen: 18° down. */
 const MIN_COS_MOON = -0.31

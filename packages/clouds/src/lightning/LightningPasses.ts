@@ -5,7 +5,7 @@ import {
   type AtmosphereView
 } from '@welkin/atmosphere'
 import { Vector3, Vector4 } from 'three'
-import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, If, float, int, mix, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { select } from '../select'
 import type { CloudsNode } from '../march/CloudsNode'
@@ -25,13 +25,7 @@ import {
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import { BoltPass } from './BoltPass'
-import {
-  CHANNEL_COLOR,
-  fromCamera,
-  STEM_POINTS,
-  type PlacedChannel,
-  type StormColumn
-} from './channel'
+import { fromCamera, STEM_POINTS, type PlacedChannel, type StormColumn } from './channel'
 import { StormDensity } from './StormDensity'
 import { channelColor } from './tsl/channelColor'
 import { meanInverseSquare } from './tsl/lineLight'
@@ -45,6 +39,15 @@ const CLOUD_SOFTNESS = 250
 const HAZE_SOFTNESS = 25
 /** Longest path through lit haze [m]. */
 const LONGEST_HAZE = 60_000
+
+/** Difference of a pixel's nearness to the glow's about it, over the latter, above which it finds the light of its own air. Greater: air shines over ridges. */
+const UNLIKE = 0.03
+
+/**
+ * Difference of the nearness at a glow pixel's four corners to four times its own, over its own, from which on an edge is there: pixels find the light of their own
+ * air. Greater: bright lines below ridges.
+ */
+const EDGE = 0.3
 
 /** Edge of a pixel of the glow, in marched ones. Greater: no relief in lit clouds (*Storm at night*). */
 const GLOW_PIXEL = 2
@@ -91,6 +94,8 @@ export class LightningPasses {
   /** Scale and offset from places in the picture to those among marched pixels: quotients of uniforms cost each pixel a division. */
   readonly #scale = vector2()
   readonly #offset = vector2()
+  /** Depth where nothing was drawn. */
+  readonly #farDepth = number()
   /** Points of the stem from the camera, in the mapped space [m], and scattering by air there [1/m]. */
   readonly #stem: readonly Vector4[] = Array.from({ length: STEM_POINTS }, () => new Vector4())
   readonly #stemArray = vec4Array(this.#stem as Vector4[])
@@ -198,21 +203,35 @@ export class LightningPasses {
     return { normal: normal.normalize().toConst(), width }
   }
 
-  /** Glow by a tent: marched pixels are one of each block, and it hides which. Light of opaque clouds as a colour, and log₂ of their distance. */
+  /**
+   * Glow by a tent: marched pixels are one of each block, and it hides which. Light of opaque clouds and of the air before them, red and blue; of the
+   * air before what was drawn; and its nearness, −1 beside edges, and on ground that was not drawn.
+   */
   #smoothed(): Vec4 {
+    const { viewRays } = this.#clouds.passes
     return Fn(() => {
       const here = uv() as unknown as Vec2
-      const texel = vec2(GLOW_PIXEL)
-        .div(this.#clouds.passes.viewRays.frame.marchedSize)
-        .toConst() as Vec2
+      const texel = vec2(GLOW_PIXEL).div(viewRays.frame.marchedSize).toConst() as Vec2
       const glow = vec4(0).toVar() as Variable<Vec4>
+      const inPicture = (place: Vec2): Vec2 => place.sub(this.#offset).div(this.#scale).toConst()
+      const at = inPicture(here)
+      const nearness = this.#nearness(viewRays.depthAt(at))
+      const bend = nearness.mul(-4).toVar() as Variable<Float>
       for (const [x, y] of CORNERS) {
-        const place = here.add(texel.mul(vec2(x - 0.5, y - 0.5)))
+        const place = here.add(texel.mul(vec2(x - 0.5, y - 0.5))).toConst() as Vec2
         glow.addAssign(this.#glow.sample(place).level(0))
+        bend.addAssign(this.#nearness(viewRays.depthAt(inPicture(place))))
       }
       const opacity = glow.z.max(LEAST_OPACITY).toConst() as Float
       const none = LEAST_OPACITY * FARTHEST
-      return vec4(channelColor(glow.xy.div(opacity)), glow.w.add(none).div(opacity))
+      const { direction, end, air } = this.#airOn(at)
+      const distance = glow.w.add(none).div(opacity).exp2().min(LONGEST_HAZE).toConst() as Float
+      const before = this.#hazeLight(direction, distance)
+      const isEdge = nearness
+        .lessThanEqual(0)
+        .and(end.lessThan(LONGEST_HAZE))
+        .or(bend.abs().greaterThan(nearness.mul(EDGE)))
+      return vec4(glow.xy.div(opacity).add(before), air, select(isEdge, -1, nearness))
     })()
   }
 
@@ -227,6 +246,19 @@ export class LightningPasses {
       sum.addAssign(vec4(from.add(to).normalize(), 1).mul(light))
     })
     return sum.div(STEM_POINTS - 1).toConst()
+  }
+
+  /** A pixel's ray, its length through lit haze [m], and the light of that. @param at - In the picture. */
+  #airOn(at: Vec2): { direction: Vec3; end: Float; air: Float } {
+    const { viewRays } = this.#clouds.passes
+    const ray = viewRayAt(viewRays, at)
+    const end = viewRayEnd(viewRays, at, ray).min(LONGEST_HAZE).toConst() as Float
+    return { ...ray, end, air: this.#hazeLight(ray.direction, end) }
+  }
+
+  /** Nearness of what was drawn, linear on planes in the picture, of depths that are not logarithmic; 0 where nothing was. */
+  #nearness(depth: Float): Float {
+    return depth.sub(this.#farDepth).abs().mul(1e4).toConst()
   }
 
   /** Light that the air on a ray scatters once, without direction, for `STORED_POWER` [cd/m²]: from three points of the stem. */
@@ -250,16 +282,19 @@ export class LightningPasses {
     const here = uv() as unknown as Vec2
     const result = color.toVar() as Variable<Vec3>
     If(this.power.greaterThan(0), () => {
-      const { viewRays } = this.#clouds.passes
-      const marched = here.mul(this.#scale).add(this.#offset)
-      const glow = this.#smooth.sample(marched).level(0).toConst() as Vec4
-      const opacity = transmittance.oneMinus().toConst() as Float
-      // The air's light ends where the pixel does: glow of neighbours would shine over ridges and the horizon.
-      const ray = viewRayAt(viewRays, here)
-      const end = viewRayEnd(viewRays, here, ray).min(LONGEST_HAZE).toConst() as Float
-      const air = this.#hazeLight(ray.direction, mix(end, glow.w.exp2().min(end), opacity))
-      const light = glow.xyz.mul(opacity).add(vec3(...CHANNEL_COLOR).mul(air))
-      result.addAssign(light.mul(this.power.div(STORED_POWER)).add(this.#bolt.sample(here)))
+      const glow = this.#smooth
+        .sample(here.mul(this.#scale).add(this.#offset))
+        .level(0)
+        .toConst() as Vec4
+      const air = glow.z.toVar() as Variable<Float>
+      // The depth that the air has read.
+      const nearness = this.#nearness((this.#clouds.depthNode as unknown as Vec4).r)
+      If(nearness.sub(glow.w).abs().greaterThan(glow.w.mul(UNLIKE)), () => {
+        // Light of neighbours would shine over ridges and the horizon.
+        air.assign(this.#airOn(here).air)
+      })
+      const light = channelColor(mix(vec2(air), glow.xy, transmittance.oneMinus()).toConst())
+      result.addAssign(light.mul(this.power.mul(1 / STORED_POWER)).add(this.#bolt.sample(here)))
     })
     return result
   }
@@ -283,6 +318,7 @@ export class LightningPasses {
     _offset.copy(channel.place).sub(viewpoint)
     this.#density.update(_offset)
     this.power.value = power.all
+    this.#farDepth.value = renderer.reversedDepthBuffer ? 0 : 1
     const { size, marchedSize, block, jitter } = this.#clouds.passes.viewRays.frame
     const marched = marchedSize.value
     const edge = block.value
