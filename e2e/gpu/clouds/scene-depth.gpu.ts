@@ -1,8 +1,9 @@
 import { aerialPerspective } from '@welkin/atmosphere'
 import { clouds } from '@welkin/clouds'
 import { BoxGeometry, Mesh, MeshBasicMaterial } from 'three'
-import { convertToTexture, pass, vec4 } from 'three/tsl'
+import { convertToTexture, pass, uv, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
+import type { Vec2 } from '../../../packages/clouds/src/tsl-types'
 import { drawToFloat, expectLight } from '../harness/atmosphere'
 import { coarse, inFog, middle, viewSize } from '../harness/cloud-view'
 import { expectClose, expectTrue } from '../harness/expect'
@@ -80,6 +81,47 @@ gpuTest(
       const [pole, whole] = light
       t.note(`light before a pole over that before a wall ${(pole / whole).toFixed(3)}`)
       expectTrue(Math.abs(pole / whole - 1) < 0.1, `a pole has ${pole / whole} of a wall's fog`)
+    }),
+  // History is the same on both.
+  { backends: ['webgpu'] }
+)
+
+gpuTest(
+  'a slit one pixel wide shows the clouds behind it, whatever the rays around it meet',
+  t =>
+    inFog(t, async view => {
+      const { camera, renderer, scene, node } = view
+      node.quality = { ...coarse, block: 4 }
+      camera.position.y = 100
+      camera.rotation.x = 0.5
+      const distance = 20
+      const pixel = (2 * distance * Math.tan(Math.PI / 6)) / viewSize.height
+      const walls = [-distance, distance + pixel].map(x => {
+        const black = wall(distance)
+        black.position.set(x, 0, -distance)
+        camera.add(black)
+        return black
+      })
+      scene.add(camera)
+      const kept = new RenderPipeline(renderer)
+      kept.outputColorTransform = false
+      const { light } = node.passes.accumulated
+      kept.outputNode = vec4(light.sample(uv() as unknown as Vec2).level(0).aaa, 1)
+      const passed: number[] = []
+      // The column has a sample of its own in each round of 16 frames.
+      for (const frames of [22, 32]) {
+        await view.draw(frames)
+        await nextFrame()
+        passed.push(middle(await drawToFloat(renderer, () => kept.render())))
+      }
+      t.note(`${passed.map(part => part.toFixed(4)).join(', ')} of the sky's light passes`)
+      // Clouds of an optical depth of 8 let next to nothing through.
+      for (const part of passed) expectTrue(part < 0.02, `${part} of the sky's light passes`)
+      for (const { geometry, material } of walls) {
+        geometry.dispose()
+        material.dispose()
+      }
+      kept.dispose()
     }),
   // History is the same on both.
   { backends: ['webgpu'] }

@@ -82,7 +82,7 @@ function marchPixels(scene: CloudScene, last: CloudTargets): Outputs {
     const { block, at, noise } = marchedPixel(viewRays)
     const viewRay = viewRayAt(viewRays, at)
     const end = viewRayEnd(viewRays, at, viewRay)
-    const known = clearAir(viewRays, last.distances, block, viewRay.ndc)
+    const known = clearAir(viewRays, last.distances, block, viewRay.ndc, end)
     const clear = { ...known, unsureUntil: viewRays.frame.unsureUntil }
     const marched = marchClouds(scene, { direction: viewRay.direction, end, jitter: noise, clear })
     const { points, transmittance, distance, first, steps } = marched

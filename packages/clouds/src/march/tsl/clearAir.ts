@@ -1,5 +1,6 @@
 import { If, exp2, float, int, vec2 } from 'three/tsl'
 import { select } from '../../select'
+import { SAME_DISTANCE } from '../../temporal/tsl/depthTest'
 import { encodeDistance } from '../../temporal/tsl/packing'
 import {
   loop,
@@ -7,7 +8,8 @@ import {
   type LevelTexture,
   type Mat3,
   type Vec2,
-  type Vec3
+  type Vec3,
+  type Vec4
 } from '../../tsl-types'
 import { ROUND } from '../FrameUniforms'
 import { FAR_AWAY } from './layerBoundaries'
@@ -102,15 +104,17 @@ const distanceOf = (level: Float): Float => exp2(level.div(PER_OCTAVE).add(FIRST
 /**
  * Clear air of a ray, by what the rays around it have found in the last frame. To be called inside of a shader function.
  *
- * @param last - Distances of the last frame's marched pixels: the third number is `unpackFound`'s code.
+ * @param last - Distances of the last frame's marched pixels: the second number is log₂ of where a ray ended, the third `unpackFound`'s code.
  * @param block - Block of the ray's pixel.
  * @param ndc - `PixelRay.ndc`.
+ * @param end - Distance where the ray ends [m].
  */
 export function clearAir(
   { frame }: FrameInputs,
   last: LevelTexture<Vec2>,
   block: Vec2,
-  ndc: Vec3
+  ndc: Vec3,
+  end: Float
 ): ClearAir {
   const until = float(0).toVar()
   const from = float(FAR_AWAY).toVar()
@@ -128,7 +132,8 @@ export function clearAir(
       const aside = vec2(float(index.mod(3)), float(index.div(3))).sub(1)
       const pixel = middle.add(aside).clamp(vec2(0), frame.marchedSize.sub(1))
       const at = pixel.add(0.5).div(frame.marchedSize).toConst() as Vec2
-      const code = last.sample(at).level(0).z.round().toConst() as Float
+      const { y: endBefore, z } = last.sample(at).level(0).toConst() as Vec4
+      const code = z.round().toConst() as Float
       const level = code.div(2).floor().toConst() as Float
       const isMemory = code.greaterThan(level.mul(2)).toConst()
       const isClear = level.equal(CLEAR).toConst()
@@ -138,7 +143,9 @@ export function clearAir(
         nearest.assign(nearest.min(level))
         farthest.assign(farthest.max(select(isClear, 0, level)))
       })
-      If(isOwn.and(isClear.or(isMemory)), () => {
+      // A ray that ended before a wall knows nothing of the air behind it.
+      const isAsFar = encodeDistance(end).sub(endBefore).lessThan(SAME_DISTANCE)
+      If(isOwn.and(isClear.or(isMemory)).and(isAsFar), () => {
         wasClear.assign(1)
       })
     })

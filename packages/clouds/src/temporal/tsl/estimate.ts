@@ -44,7 +44,7 @@ export interface Estimate extends Neighbourhood {
   readonly light: Vec4
   /** log₂ of the clouds' distance: the marched pixel's own where there is one; else mixed as the light is, or the cell's mean if a corner may be clear. */
   readonly distance: Float
-  /** Samples that it is worth, in (0, 1]: 1 at a marched pixel. */
+  /** Samples that it is worth, in [0, 1]: 1 at a marched pixel, 0 where no ray around went as far. */
   readonly weight: Float
   /** True at a marched pixel. */
   readonly isOwn: Bool
@@ -191,7 +191,7 @@ export function estimate(
     },
     statistics,
     distance,
-    weight: weight.max(LEAST_WEIGHT).toConst(),
+    weight: select(nearest.lessThan(NO_CORNER), weight.max(LEAST_WEIGHT), 0).toConst(),
     isOwn
   }
 }
