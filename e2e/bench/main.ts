@@ -112,6 +112,7 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
   async cracks() {
     const search = await findCracks(device, 10_000, 95, log)
     log(crackLines(search))
+    if (search.cracks.length > 0) process.exitCode = 1
     return { cracks: search }
   },
   async switches() {

@@ -9,6 +9,9 @@ import {
 import { Color, Matrix4, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { positionView, vec3, vec4, float } from 'three/tsl'
 import type { Node } from 'three/webgpu'
+import { viewerOf } from '../../../packages/terrain/src/tiles/cpu/viewer'
+import type { Tile } from '../../../packages/terrain/src/tiles/Tile'
+import { noTiles, TileTree } from '../../../packages/terrain/src/tiles/TileTree'
 import { skyShare } from '../../../packages/terrain/src/pages/cpu/skyShare'
 import { heightAndSky } from '../../../packages/terrain/src/pages/tsl/skyShare'
 import type { GpuContext } from '../harness/context'
@@ -35,7 +38,9 @@ interface Stage {
   readonly terrain: Terrain
   readonly camera: PerspectiveCamera
   readonly atmosphere: Atmosphere
-  /** Puts the camera above the ground, looking down, and draws where in the view each pixel's ground is, with so many new pages. */
+  /** Puts the camera above the ground, looking down. */
+  readonly aim: (longitude: number, latitude: number, height: number, pitch: number) => void
+  /** Does so, and draws where in the view each pixel's ground is, with so many new pages. */
   readonly draw: (
     longitude: number,
     latitude: number,
@@ -70,19 +75,23 @@ async function stage(
   const axes = new Matrix4()
   /** Camera that draws nothing: with it, drawing brings no further pages. */
   const aside = new PerspectiveCamera()
+  const aim: Stage['aim'] = (longitude, latitude, height, pitch) => {
+    const ground = terrain.heightAt(longitude, latitude)
+    ellipsoid.geodeticToECEF({ longitude, latitude, height: ground + height }, camera.position)
+    ellipsoid.localYUpFrame(camera.position, axes)
+    camera.quaternion.setFromRotationMatrix(axes)
+    camera.rotateX(pitch)
+    camera.near = height / 20
+    camera.updateProjectionMatrix()
+    camera.updateMatrixWorld()
+  }
   return {
     terrain,
     camera,
     atmosphere,
+    aim,
     draw(longitude, latitude, height, pitch, pages = Infinity) {
-      const ground = terrain.heightAt(longitude, latitude)
-      ellipsoid.geodeticToECEF({ longitude, latitude, height: ground + height }, camera.position)
-      ellipsoid.localYUpFrame(camera.position, axes)
-      camera.quaternion.setFromRotationMatrix(axes)
-      camera.rotateX(pitch)
-      camera.near = height / 20
-      camera.updateProjectionMatrix()
-      camera.updateMatrixWorld()
+      aim(longitude, latitude, height, pitch)
       terrain.update(renderer, camera, pages)
       if (pages < Infinity) terrain.camera = aside
       else if (!terrain.isFull && options.pageMemory === undefined)
@@ -293,21 +302,62 @@ gpuTest(
   }
 )
 
+/** Finest level of tiles of eight cells. */
+const FINEST = 21
+
+/**
+ * Looks for a height at which a tile in view is split, from one height to another.
+ *
+ * @param tilesFrom - Tiles in view from a height.
+ * @returns Heights just before and after, a fifty-thousandth apart; null if none is split.
+ */
+function findSplit(
+  tilesFrom: (height: number) => Set<Tile>,
+  from: number,
+  to: number
+): [low: number, high: number] | null {
+  const isSplit = (low: number, high: number): boolean => {
+    const fine = tilesFrom(low)
+    return [...tilesFrom(high)].some(tile => tile.children?.some(child => fine.has(child)))
+  }
+  if (!isSplit(from, to)) return null
+  let [low, high] = [from, to]
+  while (high > 1.00002 * low) {
+    const middle = Math.sqrt(low * high)
+    // Of several the lowest.
+    if (isSplit(low, middle)) high = middle
+    else low = middle
+  }
+  return isSplit(low, high) ? [low, high] : null
+}
+
 gpuTest(
-  'the ground does not jump on the way from 2 m to 20,000 km',
+  'the ground does not jump on the way from 2 m to 20,000 km, where tiles are split least of all',
   async t => {
-    const { draw, camera, terrain } = await stage(t, 8, { width: 48, height: 32 })
+    const { draw, aim, camera, terrain, atmosphere } = await stage(t, 8, { width: 48, height: 32 })
+    const { ellipsoid } = atmosphere
     // Narrow: no slope is seen from behind.
     camera.fov = 20
+    const tree = new TileTree(ellipsoid, heights, FINEST, terrain.detail)
+    const tilesFrom = (height: number): Set<Tile> => {
+      aim(1, 47, height, -Math.PI / 2)
+      const { position } = camera
+      const viewer = viewerOf(camera, position, height, heights.lowest, new Matrix4(), ellipsoid, 0)
+      return new Set(tree.select(viewer, 3000, noTiles(), false).tiles)
+    }
     let worst = 0
     let where = 0
+    let splits = 0
     for (let height = 2; height < 2e7; height *= 4) {
-      const distances = async (factor: number): Promise<Float32Array> => {
-        const picture = await draw(1, 47, height * factor, -Math.PI / 2)
-        return picture.data.filter((_, i) => i % 4 === 2).map(z => -z / (height * factor))
+      const split = findSplit(tilesFrom, height, 2.2 * height)
+      if (split !== null) splits++
+      const distances = async (from: number): Promise<Float32Array> => {
+        const picture = await draw(1, 47, from, -Math.PI / 2)
+        return picture.data.filter((_, i) => i % 4 === 2).map(z => -z / from)
       }
       // Ever closer heights: jumps would stay, what moves does not.
-      const [before, after] = [await distances(1), await distances(1.00002)]
+      const [low, high] = split ?? [height, 1.00002 * height]
+      const [before, after] = [await distances(low), await distances(high)]
       before.forEach((value, i) => {
         if (!(value > 0 && after[i] > 0)) throw new Error(`a hole at ${height} m`)
         const change = Math.abs(after[i] - value) / value
@@ -317,7 +367,10 @@ gpuTest(
         }
       })
     }
-    t.note(`changes of distance by at most ${worst.toExponential(1)}, at ${where.toPrecision(2)} m`)
+    t.note(
+      `${splits} splits, changes of distance by at most ${worst.toExponential(1)}, at ${where.toPrecision(2)} m`
+    )
+    if (splits < 8) throw new Error(`only ${splits} tiles were split`)
     if (worst > 1e-3) throw new Error(`the ground jumps by ${worst} of its distance`)
     terrain.dispose()
   },
