@@ -11,6 +11,13 @@ export type Vec4 = Node<'vec4'>
 export type UVec3 = Node<'uvec3'>
 export type UVec4 = Node<'uvec4'>
 
+/** A variable of a shader. */
+export type Variable<T> = T & {
+  assign(value: T): void
+  addAssign(value: T): void
+  mulAssign(value: T): void
+}
+
 /** `Loop` with the counter's name, so that nested loops do not shadow each other. */
 export const loop = (name: string, end: Int | number, body: (index: Int) => void): void => {
   const nodes = threeLoop as unknown as (

@@ -16,7 +16,7 @@ import {
   type LightingModelDirectInput,
   type NodeBuilder
 } from 'three/webgpu'
-import type { Float, Vec3 } from '../tsl-types'
+import type { Float, Variable, Vec3 } from '../tsl-types'
 import { bouncedLight } from './tsl/bouncedLight'
 import { WATER_FRESNEL } from './tsl/seaSurface'
 
@@ -31,13 +31,11 @@ export const viewDirection = (): Vec3 =>
       : coveredPosition().negate().normalize()
   )().toConst()
 
-type Variable = Vec3 & { assign(value: Vec3): void; addAssign(value: Vec3): void }
-
 /** Part of the context of three's lights that is used. */
 interface LightingContext {
   readonly ambientOcclusion: Float
   readonly irradiance: Vec3
-  readonly reflectedLight: { readonly indirectDiffuse: Variable }
+  readonly reflectedLight: { readonly indirectDiffuse: Variable<Vec3> }
 }
 
 /** Diffuse albedo. */
@@ -55,9 +53,9 @@ interface LightsBuilder {
 
 /** Reflected light of three's lights. */
 interface ReflectedLight {
-  readonly directDiffuse: Variable
-  readonly directSpecular: Variable
-  readonly indirectDiffuse: Variable
+  readonly directDiffuse: Variable<Vec3>
+  readonly directSpecular: Variable<Vec3>
+  readonly indirectDiffuse: Variable<Vec3>
 }
 
 /**
@@ -87,7 +85,7 @@ function microfacets(
  */
 class GroundLightingModel extends PhysicalLightingModel {
   /** Irradiance of the ground about a pixel by lights that have a direction. */
-  #sunlight: Variable | null = null
+  #sunlight: Variable<Vec3> | null = null
   #mirrors = false
 
   /** @param ground - Normal of the ground without its stones, view space. */
@@ -98,7 +96,7 @@ class GroundLightingModel extends PhysicalLightingModel {
   override start(builder: NodeBuilder): void {
     const { environmentNode, material, lightsNode } = builder as unknown as LightsBuilder
     this.#mirrors = Boolean(environmentNode || material.envNode || material.envMap)
-    this.#sunlight = vec3(0).toVar() as unknown as Variable
+    this.#sunlight = vec3(0).toVar() as unknown as Variable<Vec3>
     if (this.#mirrors) {
       super.start(builder)
       return
@@ -181,7 +179,7 @@ export class GroundMaterial extends MeshStandardNodeMaterial {
     super.setupSpecular()
     const reflectance = vec3(mix(GROUND_FRESNEL, WATER_FRESNEL, this.water))
     for (const color of [specularColor, specularColorBlended]) {
-      ;(color as unknown as Variable).assign(reflectance)
+      ;(color as unknown as Variable<Vec3>).assign(reflectance)
     }
   }
 }

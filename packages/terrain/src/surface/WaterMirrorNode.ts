@@ -8,7 +8,7 @@ import {
 } from '@welkin/atmosphere'
 import { Fn, If, mix, reflect, smoothstep, vec3 } from 'three/tsl'
 import type { Node, NodeBuilder } from 'three/webgpu'
-import type { Float, Vec3 } from '../tsl-types'
+import type { Float, Variable, Vec3 } from '../tsl-types'
 import { waterFresnel } from './tsl/seaSurface'
 
 /** Distances between which the mirrored sky goes over from the viewer's to an even one over the water [m]. */
@@ -30,8 +30,6 @@ export interface MirroringWater {
   /** Variance of the slopes that the normal does not have. */
   readonly variance: Float
 }
-
-type Variable = Vec3 & { assign(value: Vec3): void }
 
 /**
  * Sky that water mirrors, without the sun, which is a light. Near by it is the viewer's sky in the mirrored direction, far away the even
@@ -57,7 +55,7 @@ export class WaterMirrorNode extends AtmosphereNode {
     if (environmentNode || material.envNode) return vec3(0)
     return Fn(() => {
       const { cover, normal, variance } = this.water
-      const radiance = vec3(0).toVar() as unknown as Variable
+      const radiance = vec3(0).toVar() as unknown as Variable<Vec3>
       If(cover.greaterThan(0), () => {
         radiance.assign(this.#mirrored(normal, variance).mul(cover))
       })
@@ -79,7 +77,7 @@ export class WaterMirrorNode extends AtmosphereNode {
     const leaving = (reflect(incoming, facet) as unknown as Vec3).toConst()
     const raised = leaving.add(up.mul(leaving.dot(up).negate().add(LOWEST).max(0)))
     const even = smoothstep(NEAR, FAR, distance).toConst() as Float
-    const sky = vec3(0).toVar() as unknown as Variable
+    const sky = vec3(0).toVar() as unknown as Variable<Vec3>
     If(even.lessThan(1), () => {
       sky.assign(skyColor(view, raised.normalize().toConst(), null, []))
     })

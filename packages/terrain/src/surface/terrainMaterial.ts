@@ -23,7 +23,7 @@ import { REFERENCE_STEP } from '../noise/tsl/latticeNoise'
 import { faceAxes } from '../tiles/tsl/cubeSphere'
 import type { ShaderFigure } from '../tiles/tsl/figure'
 import { tilePages, tileVertex, type TileVertex } from '../tiles/tsl/tileVertex'
-import type { Float, Vec2, Vec3, Vec4 } from '../tsl-types'
+import type { Float, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
 import type { GroundDetail } from './tsl/grain'
 import { groundZone } from './tsl/groundRules'
 import { groundSurface } from './tsl/groundSurface'
@@ -42,8 +42,6 @@ import { WaterMirrorNode } from './WaterMirrorNode'
 /** True of the material that three draws shadow maps with. */
 export const isShadowPass = (material: object | null): boolean =>
   material !== null && 'isShadowPassMaterial' in material
-
-type Variable = Vec3 & { assign(value: Vec3): void }
 
 /** Varying: vertices assign it, pixels read it. */
 const handedOn = <T extends Node>(type: string, name: string): T & { assign(value: T): void } =>
@@ -153,8 +151,8 @@ export function terrainMaterial(
   const dry = normal.sub(surface.grain)
   // Normal and roughness, and the variance of water's slopes: all that land does without is in one branch.
   const found = Fn(() => {
-    const lit = dry.toVar() as unknown as Variable
-    const rough = vec3(surface.roughness).toVar() as unknown as Variable
+    const lit = dry.toVar() as unknown as Variable<Vec3>
+    const rough = vec3(surface.roughness).toVar() as unknown as Variable<Vec3>
     If(cover.greaterThan(0), () => {
       lit.assign(mix(lit, up.sub(sea.slope), cover))
       const ofWater = sea.variance.sqrt().sqrt()
@@ -173,7 +171,7 @@ export function terrainMaterial(
     const color = (picture === null
       ? made
       : pictured(picture, made, surface.detail.mul(uniforms.imageAlbedo))
-    ).toVar() as unknown as Variable
+    ).toVar() as unknown as Variable<Vec3>
     If(cover.greaterThan(0), () => {
       const cosViewer = litView.dot(viewDirection()).max(0).toConst() as Float
       const entering = waterFresnel(cosViewer, unresolved).oneMinus()

@@ -1,6 +1,6 @@
 import { Fn, If, dFdx, dFdy, float, mat4, smoothstep, vec3, vec4 } from 'three/tsl'
 import type { Texture } from 'three'
-import type { Float, Vec3, Vec4 } from '../../tsl-types'
+import type { Float, Variable, Vec3, Vec4 } from '../../tsl-types'
 import { GRAIN_SLOPE } from '../grainTexture'
 import { LONGEST_KEPT } from './seaSurface'
 import { frameNear, pieceOf, tilingVertices } from './stochasticTiling'
@@ -77,9 +77,6 @@ export interface Grain {
   readonly lost: Float
 }
 
-type Variable = Vec4 & { addAssign(value: Vec4): void; mulAssign(value: Vec4): void }
-type Slope = Vec3 & { assign(value: Vec3): void }
-
 /** Stones and grass from 3 m to 1 cm, and crowns from afar; 0 where they are smaller than pixels. */
 export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
   const { grain, offset, first, normal } = place
@@ -99,12 +96,12 @@ export function grainAt(place: GrainPlace, detail: GroundDetail): Grain {
     .toConst() as Float
   // Several vectors in one value: what the branches of both need is found once, and none of it far away.
   const layers = Fn(() => {
-    const fine = vec4(0).toVar() as unknown as Variable
-    const coarse = vec4(0).toVar() as unknown as Variable
-    const fineSlope = vec3(0).toVar() as unknown as Slope
-    const coarseSlope = vec3(0).toVar() as unknown as Slope
-    const crowns = vec4(0).toVar() as unknown as Variable
-    const crownSlope = vec3(0).toVar() as unknown as Slope
+    const fine = vec4(0).toVar() as unknown as Variable<Vec4>
+    const coarse = vec4(0).toVar() as unknown as Variable<Vec4>
+    const fineSlope = vec3(0).toVar() as unknown as Variable<Vec3>
+    const coarseSlope = vec3(0).toVar() as unknown as Variable<Vec3>
+    const crowns = vec4(0).toVar() as unknown as Variable<Vec4>
+    const crownSlope = vec3(0).toVar() as unknown as Variable<Vec3>
     const find = (): void => {
       const logSize = size.max(1e-6).log2().toConst() as Float
       const frame = { ...frameNear(normal, place.up, first), logSize }

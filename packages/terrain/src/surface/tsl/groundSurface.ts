@@ -1,5 +1,5 @@
 import { Fn, If, float, mix, smoothstep, vec3 } from 'three/tsl'
-import type { Float, Vec3 } from '../../tsl-types'
+import type { Float, Variable, Vec3 } from '../../tsl-types'
 import type { GroundMaps } from '../maps/GroundMaps'
 import { grainAt, leaning, type GroundDetail } from './grain'
 import {
@@ -176,7 +176,7 @@ const layered = (layers: GroundLayers, colors: GroundColors, shared: Float[]): V
       ;(value as unknown as { toStack(): void }).toStack()
     }
     const { snow, bare, inland, bareness, dryness, woods } = layers
-    const made = vec3(0).toVar() as unknown as Vec3 & { assign(value: Vec3): void }
+    const made = vec3(0).toVar() as unknown as Variable<Vec3>
     const lay = (share: Float, layer: Vec3): void => {
       If(share.greaterThan(0), () => {
         made.assign(mix(made, layer, share))

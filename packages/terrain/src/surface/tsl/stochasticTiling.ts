@@ -18,7 +18,7 @@ import {
 } from 'three/tsl'
 import type { Texture } from 'three'
 import { latticeGradient } from '../../noise/tsl/latticeNoise'
-import type { Float, UInt, UVec4, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import type { Float, UInt, UVec4, Variable, Vec2, Vec3, Vec4 } from '../../tsl-types'
 
 /** Directions in which pictures are laid, and the level of detail that they are read at. */
 export interface TilingFrame {
@@ -150,8 +150,6 @@ export function pieceOf(
   return node.level(level).mul(2).sub(1)
 }
 
-type Variable = Vec3 & { assign(value: Vec3): void }
-
 /** Sine of the slope from which on pictures lie on a tilted plane, and sine and cosine of its tilt: of 55°. */
 const STEEP = 0.53
 const SIN_TILT = 0.82
@@ -178,8 +176,8 @@ export function frameNear(normal: Vec3, up: Vec3, axis: Vec3): { tangent: Vec3; 
   const north = up.cross(east).toConst() as Vec3
   const level = vec2(normal.dot(east), normal.dot(north)).toConst() as Vec2
   const sine = level.length().toConst() as Float
-  const tangent = east.toVar() as unknown as Variable
-  const bitangent = north.toVar() as unknown as Variable
+  const tangent = east.toVar() as unknown as Variable<Vec3>
+  const bitangent = north.toVar() as unknown as Variable<Vec3>
   If(sine.greaterThan(STEEP), () => {
     const azimuth = level.mul(sine.reciprocal().mul(EIGHTHS)).round().normalize().toConst() as Vec2
     const downhill = east.mul(azimuth.x).add(north.mul(azimuth.y)).toConst() as Vec3
