@@ -187,14 +187,13 @@ export function cloudAmbient(
   { depthAbove, depthBelow, layered, cosView }: CloudAmbientSample
 ): { sky: number; ground: number } {
   const openness = layered + (1 - layered) * ISOLATED_DEPTH
-  const above = Math.max(depthAbove, 0) * openness
-  const below = Math.max(depthBelow, 0) * openness
+  const [high, low] = [Math.max(depthAbove, 0), Math.max(depthBelow, 0)]
+  const [above, below] = [high * openness, low * openness]
   const share = (depth: number, cos: number): number => {
     const [s00, s10, s20] = sampleSkySource(table, depth, above + below)
     return Math.max(s00 + s10 * cos + (s20 * (3 * cos ** 2 - 1)) / 2, 0)
   }
   const slab = { sky: share(above, cosView), ground: share(below, -cosView) }
-  const [high, low] = [Math.max(depthAbove, 0), Math.max(depthBelow, 0)]
   const { decay, face, power, slope, thinSlope } = skyShareFit
   const tilt = slope + thinSlope * Math.exp(-decay * (high + low))
   const logit = power * Math.log((low + face) / (high + face)) + tilt * cosView

@@ -141,8 +141,9 @@ export function cloudAmbientShares(
     .mul(1 - ISOLATED_DEPTH)
     .add(ISOLATED_DEPTH)
     .toConst()
-  const above = depthAbove.max(0).mul(openness).toConst()
-  const below = depthBelow.max(0).mul(openness).toConst()
+  const [high, low] = [depthAbove, depthBelow].map(depth => depth.max(0).toConst() as Float)
+  const above = high.mul(openness).toConst()
+  const below = low.mul(openness).toConst()
   const uv = slabCoordinates(above, above.add(below)).toConst()
   const at = (coordinates: Vec2, cosine: Float): Float =>
     legendreSeries(readLayer(light, coordinates, float(2 * slabTableForm.lightAngles)), cosine)
@@ -151,7 +152,6 @@ export function cloudAmbientShares(
   const sky = at(uv, cosView)
   // The same slab seen from below.
   const ground = at(vec2(uv.x.oneMinus(), uv.y), cosView.negate().toConst())
-  const [high, low] = [depthAbove, depthBelow].map(depth => depth.max(0).toConst() as Float)
   const slope = high.add(low).mul(-fit.decay).exp().mul(fit.thinSlope).add(fit.slope)
   const ratio = low.add(fit.face).div(high.add(fit.face))
   const share = ratio

@@ -128,6 +128,7 @@ export function clearAir(
     const nearest = float(CLEAR).toVar()
     const farthest = float(0).toVar()
     const wasClear = float(0).toVar()
+    const ownEnd = encodeDistance(end).toConst() as Float
     loop('around', 9, index => {
       const aside = vec2(float(index.mod(3)), float(index.div(3))).sub(1)
       const pixel = middle.add(aside).clamp(vec2(0), frame.marchedSize.sub(1))
@@ -144,7 +145,7 @@ export function clearAir(
         farthest.assign(farthest.max(select(isClear, 0, level)))
       })
       // A ray that ended before a wall knows nothing of the air behind it.
-      const isAsFar = encodeDistance(end).sub(endBefore).lessThan(SAME_DISTANCE)
+      const isAsFar = ownEnd.sub(endBefore).lessThan(SAME_DISTANCE)
       If(isOwn.and(isClear.or(isMemory)).and(isAsFar), () => {
         wasClear.assign(1)
       })
