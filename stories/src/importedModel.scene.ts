@@ -31,8 +31,8 @@ export async function createImportedModel(
   const { atmosphere } = air
   const url = await squareURL()
   // #region model
-  // #shown const url = 'square.glb'
-  const { scene: model } = await new GLTFLoader().loadAsync(url)
+  // #shown const { scene: model } = await new GLTFLoader().loadAsync('square.glb')
+  const { scene: model } = await new GLTFLoader().loadAsync(url) // #hidden
   scene.add(model)
   const lamps = new Map<PointLight | SpotLight, number>() // of KHR_lights_punctual, and candela
   model.traverse(part => {
@@ -68,11 +68,10 @@ export async function createImportedModel(
     explorer?.update(elapsed())
     camera.updateMatrixWorld()
     // #region lamps
-    // #shown const lampsBelow = 0.03 // sine of the sun's elevation
-    const exposure = exposureFor(atmosphere, camera, { floor: 10 }) // lux of the lamps
-    atmosphere.luminanceScale = 1e-4 * exposure // each frame
-    const isDark = atmosphere.sunDirection.y < lampsBelow
-    const scale = isDark ? atmosphere.luminanceScale : 0 // lamps follow the exposure
+    // Each frame. The floor is the lux of the lamps, 0.03 the sine of the sun's elevation.
+    atmosphere.luminanceScale = 1e-4 * exposureFor(atmosphere, camera, { floor: 10 })
+    // #shown const scale = atmosphere.sunDirection.y < 0.03 ? atmosphere.luminanceScale : 0
+    const scale = atmosphere.sunDirection.y < lampsBelow ? atmosphere.luminanceScale : 0 // #hidden
     for (const [lamp, candela] of lamps) lamp.intensity = candela * scale
     // #endregion
     glowing.forEach((material, i) => (material.emissiveIntensity = luminances[i] * scale))

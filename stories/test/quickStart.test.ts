@@ -24,6 +24,14 @@ it('takes no more than ten lines', () => {
   expect(count).toBeLessThanOrEqual(10)
 })
 
+it('puts a model from a file under the sky, its lamps lit at dusk, in no more than ten', () => {
+  const model = read('stories/src/importedModel.scene.ts')
+  const code = ['model', 'lamps'].flatMap(name => codeRegion(model, name).split('\n'))
+  const count = code.filter(line => line !== '' && !line.trim().startsWith('//')).length
+  expect(count).toBeGreaterThan(0)
+  expect(count).toBeLessThanOrEqual(10)
+})
+
 it.each(['README.md', 'packages/atmosphere/README.md'])('%s has the very lines', file => {
   const block = quickStartBlock(read(file))
   expect(block.split(`\n\n${lines}\n\n`)).toHaveLength(2)
