@@ -156,7 +156,7 @@ const DECK_STEPS: Steps = { light: 2, depth: 0.6, layer: 1 }
 
 /** Height of cumulus from which it is a tower [m], and growth of steps in the tallest ones: much of what is in sight is cloud. */
 const TOWERS = [1200, 6000] as const
-const TOWER_GROWTH = 2.5
+const TOWER_GROWTH = 3.5
 
 /** Share of a deck, or of banks of fog, from which all of these hold: with less, the march goes over to them. */
 const WHOLE = 0.4
