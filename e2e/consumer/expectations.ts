@@ -94,10 +94,9 @@ const fibersClock = /THREE\.Clock: This module has been deprecated/
 
 /** Expectations by name of the page. */
 export const expectations: Record<string, Expectation> = {
-  index: { wrongWith: checkQuickStart, backends: ['webgpu'] },
   clouds: { wrongWith: checkClouds, backends: ['webgpu'] },
   terrain: { wrongWith: checkTerrain, backends: ['webgpu'] },
-  // React makes the renderer; what that does without WebGPU webpack's page shows.
+  // The quick start is drawn as webpack bundles it, without WebGPU, and its parts under React; Vite's page of it is only built.
   fiber: { wrongWith: checkQuickStart, backends: ['webgpu'], allows: fibersClock },
   fiberClouds: { wrongWith: checkClouds, backends: ['webgpu'], allows: fibersClock },
   webpack: { wrongWith: checkQuickStart, backends: ['webgl'] },

@@ -136,7 +136,7 @@ type Story = StoryObj<CloudsArgs>
 export const Cumulus: Story = {
   name: 'Cumulus from the ground',
   args: { coverage: 0.45, pitch: 18 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** Stratocumulus below the windows of an aircraft. */

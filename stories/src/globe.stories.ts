@@ -106,8 +106,7 @@ export const NightRooftops: Story = {
 /** Towns, airglow and stars. */
 export const NightOrbit: Story = {
   name: 'By night: 400 km',
-  args: { place: 'orbit', hour: 15 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { place: 'orbit', hour: 15 }
 }
 
 export const NightGlobe: Story = {

@@ -62,8 +62,7 @@ export const Deck: Story = { name: 'Below a broken deck', tags: ['screenshot', '
 /** Rays between the shadows of spruces on a ridge, in the fog of the valley before it, the sun 9° up. */
 export const Ridge: Story = {
   name: 'Ridge at sunrise',
-  args: argsOf('ridge'),
-  tags: ['screenshot', 'webgpu-only']
+  args: argsOf('ridge')
 }
 
 /** Towers against the sun, in haze and mist. */
