@@ -13,8 +13,8 @@ import { watchProcessorTime } from './processorTime.mjs'
  * cores, and run alone.
  */
 const steps = [
-  { id: 'types', title: 'Types', lane: 'packages' },
-  { id: 'lint', title: 'Lint and format', lane: 'packages' },
+  { id: 'types', title: 'Types', lane: 'numbers' },
+  { id: 'lint', title: 'Lint and format', lane: 'numbers' },
   { id: 'build', title: 'Library builds', lane: 'packages' },
   { id: 'packages', title: 'Published packages', script: 'test:packages', lane: 'packages' },
   { id: 'size', title: 'Bundle size', lane: 'packages' },

@@ -159,6 +159,5 @@ gpuTest(
     for (const each of [occluded, pipeline, scenePass]) each.dispose()
     world.dispose()
   },
-  // A shader has as many textures on both; the test before draws all but the maps on WebGL, with as many textures.
-  { backends: ['webgpu'], timeoutSeconds: 900 }
+  { timeoutSeconds: 900 }
 )

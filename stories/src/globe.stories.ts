@@ -106,7 +106,8 @@ export const NightRooftops: Story = {
 /** Towns, airglow and stars. */
 export const NightOrbit: Story = {
   name: 'By night: 400 km',
-  args: { place: 'orbit', hour: 15 }
+  args: { place: 'orbit', hour: 15 },
+  tags: ['screenshot', 'webgpu-only']
 }
 
 export const NightGlobe: Story = {
