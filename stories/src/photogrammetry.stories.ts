@@ -61,8 +61,11 @@ export const Local: Story = { tags: ['screenshot'] }
 /** The photographs as they are, in today's air. */
 export const Untouched: Story = { args: { strength: 0 } }
 
+/** Needs a key and a network: without, the local tiles, as in the picture here. */
 export const Manhattan: Story = { args: { place: 'manhattan', hour: 22.5 } }
 
+/** Needs a key and a network: without, the local tiles, as in the picture here. */
 export const Fuji: Story = { args: { place: 'fuji', hour: 20.5 } }
 
+/** Needs a key and a network: without, the local tiles, as in the picture here. */
 export const London: Story = { args: { place: 'london', hour: 18.5 } }
