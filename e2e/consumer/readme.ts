@@ -61,7 +61,6 @@ export function writeReadmeModules(root: string, app: string): number {
   const folder = join(app, 'src', 'readme')
   mkdirSync(folder)
   writeFileSync(join(folder, 'given.d.ts'), given)
-  const [quickStart] = codeBlocks(readFileSync(join(root, 'README.md'), 'utf8'))
   let count = 0
   for (const document of documents) {
     const markdown = readFileSync(join(root, document), 'utf8')
@@ -83,10 +82,8 @@ export function writeReadmeModules(root: string, app: string): number {
     } else {
       if (fiber.length !== 1) throw new Error(`${document} must have one block of TSX`)
       writeFileSync(join(app, 'src', 'fiber.tsx'), fiber[0])
-      // What is drawn as webpack bundles it stands for the page that Vite builds of README.md.
-      if (blocks[0] !== quickStart) throw new Error(`${document} has another quick start`)
-      // It has no types of its own: to a bundler it is JavaScript.
-      writeFileSync(join(app, 'webpack-entry.js'), quickStart)
+      // The quick start has no types of its own: to a bundler it is JavaScript.
+      writeFileSync(join(app, 'webpack-entry.js'), blocks[0])
     }
   }
   return count
