@@ -13,7 +13,7 @@ import { watchProcessorTime } from './processorTime.mjs'
  * cores, and run alone.
  */
 const steps = [
-  { id: 'types', title: 'Types', lane: 'numbers' },
+  { id: 'types', title: 'Types', lane: 'packages' },
   { id: 'lint', title: 'Lint and format', lane: 'numbers' },
   { id: 'build', title: 'Library builds', lane: 'packages' },
   { id: 'packages', title: 'Published packages', script: 'test:packages', lane: 'packages' },
