@@ -93,6 +93,12 @@ export const heightForm = {
 
 /** Constants of billows and detail: tsl/billows.ts. */
 export const billowForm = {
+  /**
+   * Footprints that billows and detail are looked up by, over a sample's [–]: heads of a pixel or two are no heads, but grain.
+   * Greater: far clouds of clay; 1: of moss (*Cockpit*).
+   */
+  footprints: 2.5,
+  detailFootprints: 1.4,
   /** Strength of coarse, fine and finest billows, per deviation of their noise [–]. Greater: ragged (*Cumulus*). */
   coarse: 0.76,
   fine: 1.55,

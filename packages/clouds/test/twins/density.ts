@@ -302,10 +302,11 @@ function detailAt(
   period: number,
   footprint: number
 ): number {
+  const width = footprint * billowForm.detailFootprints
   const [x, y, z] = placeIn(stretched, latticeRotations.detail, period)
   return OCTAVES.reduce((sum, [part, amplitude]) => {
-    if (part < 1 && footprint >= (5 / 24) * part * period) return sum
-    const level = levelOf(footprint, (part * period) / NOISE_SIZE.detail)
+    if (part < 1 && width >= (5 / 24) * part * period) return sum
+    const level = levelOf(width, (part * period) / NOISE_SIZE.detail)
     const [value] = decoded(noise.sample('detail', [x / part, y / part, z / part], level))
     return sum + amplitude * value
   }, 0)
@@ -346,7 +347,7 @@ export function sampleLayer(
     .clone()
     .applyQuaternion(state.rotations[index])
     .divide(new Vector3(stretch, stretch, 1))
-  const level = levelOf(footprint, periods.shape / NOISE_SIZE.shape)
+  const level = levelOf(footprint * billowForm.footprints, periods.shape / NOISE_SIZE.shape)
   const billowsAt = (shift: Vector3): number[] => {
     const place = placeIn(stretched, latticeRotations.shape, periods.shape)
     const there = shifted(place, shift.toArray(), 1 / periods.shape)

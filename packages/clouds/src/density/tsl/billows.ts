@@ -75,7 +75,7 @@ export function detail(
 ): Float[] {
   const { perDetailPeriod } = layer
   const points = samples.map(({ offset }) => layer.detailLattice(offset).toConst() as Vec3)
-  const width = footprint.mul(perDetailPeriod).toConst() as Float
+  const width = footprint.mul(perDetailPeriod).mul(billowForm.detailFootprints).toConst() as Float
   const octave = (period: number): Float[] => {
     const level = levelOf(width.div(period), 1 / NOISE_SIZE.detail)
     return points.map(

@@ -1,5 +1,5 @@
 import { If, float, smoothstep } from 'three/tsl'
-import { strengthForm } from '../formConstants'
+import { billowForm, strengthForm } from '../formConstants'
 import { noisePeriods, REGION_SIZE, scaleWeights } from '../../layers/layerUniforms'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
 import type { Float } from '../../tsl-types'
@@ -63,7 +63,8 @@ function lostVariance(layer: LayerNodes, footprint: Float, level: Float, cloudLe
 /** Resolution of a layer's samples of a footprint. To be called inside of a shader function. */
 export function resolutionAt(layer: LayerNodes, footprint: Float): Resolution {
   const level = weatherLevel(footprint, layer.perWeatherPeriod)
-  const shapeLevel = levelOf(footprint.mul(layer.perShapePeriod), 1 / NOISE_SIZE.shape)
+  const width = footprint.mul(layer.perShapePeriod).mul(billowForm.footprints)
+  const shapeLevel = levelOf(width, 1 / NOISE_SIZE.shape)
   const cloudLevel = level
     .sub(layer.coarseness.mul(strengthForm.levelsPerOctave))
     .toConst() as Float
