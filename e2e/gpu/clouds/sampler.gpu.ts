@@ -88,8 +88,8 @@ gpuTest('clouds too thin to be seen do not move the points that a ray sees', asy
   // Optical depths of two pairs of steps, and where they begin.
   const [distance] = await t.evaluate([[1e-9, 0.5, 100, 200]], input => {
     const state = seenState()
-    addPair(state, vec2(input.x), [input.z, input.z.add(1)])
-    addPair(state, vec2(input.y), [input.w, input.w.add(2)])
+    addPair(state, vec2(input.x), [input.z, input.z.add(1)], vec2(1))
+    addPair(state, vec2(input.y), [input.w, input.w.add(2)], vec2(2))
     return seenClouds(state, float(1)).points.distances
   })
   const share = Math.exp(-0.5) / (1 + Math.exp(-0.5))
@@ -116,7 +116,7 @@ gpuTest('dense steps are seen where they begin, thin ones in their middle', asyn
     depths.map(depth => [depth, 0, 0, 0] as const),
     input => {
       const state = seenState()
-      addPair(state, vec2(input.x, 0), [float(1005), float(1015)])
+      addPair(state, vec2(input.x, 0), [float(1005), float(1015)], vec2(10))
       return seenClouds(state, float(1)).points.distances
     }
   )

@@ -20,10 +20,15 @@ import { backgroundAt } from './sampler'
 import { ifStorm, isStorm } from './storm'
 import { keptStorm } from './stormNearby'
 
+/** Strength of what was not sampled, less than any other [–]. */
+export const NOT_SAMPLED = -1e4
+
 /** Two samples of all clouds near each other. */
 export interface SamplePair {
   /** At the first and at the second place [1/m]. */
   readonly extinction: Vec2
+  /** Greatest strength of a layer at both, as of `LayerSample`; `NOT_SAMPLED` where that is not known [–]. */
+  readonly strength: Vec2
   /** Distance from either in which there is likely no cloud; 0 in clouds [m]. */
   readonly likelyDistance: Float
   /** True where storms are so near that they were sampled. */
@@ -69,6 +74,7 @@ export function samplePair(
 ): SamplePair {
   const places = [-0.5, 0.5].map(at => sampleNearby(middle, direction, length.mul(at)))
   const sum = vec2(0).toVar() as Vec2
+  const strength = vec2(NOT_SAMPLED).toVar() as Vec2
   const nearest = float(NOWHERE).toVar()
   const isNear = bool(false).toVar()
   const greatest = float(0).toVar()
@@ -108,6 +114,10 @@ export function samplePair(
           direction,
           storm
         })
+        // A user's own clouds have none that tells how far their edges are.
+        if (!field.extinction) {
+          strength.assign(strength.max(vec2(first.strength, second.strength)))
+        }
         const strongest = first.strength.max(second.strength)
         likely.assign(likelyDistance(layer, strongest).mul(field.skipping))
         sum.addAssign(vec2(first.extinction, second.extinction))
@@ -128,5 +138,5 @@ export function samplePair(
     })
   }
   forLayersUnrolled(field, look, range)
-  return { extinction: sum, likelyDistance: nearest, isNear, greatest }
+  return { extinction: sum, strength, likelyDistance: nearest, isNear, greatest }
 }

@@ -1,6 +1,14 @@
 import { Break, If, float, int, vec4 } from 'three/tsl'
 import { select } from '../../select'
-import { loop, type Bool, type Float, type Int, type Variable, type Vec3 } from '../../tsl-types'
+import {
+  loop,
+  type Bool,
+  type Float,
+  type Int,
+  type Variable,
+  type Vec2,
+  type Vec3
+} from '../../tsl-types'
 import { hasStorms, knowsStorms } from '../../density/kinds'
 import { samplePair, type ClearLayers } from '../../density/tsl/samplePair'
 import type { CloudSample } from '../../density/tsl/sample'
@@ -9,6 +17,7 @@ import type { ShadingContext } from '../../light/tsl/shadingContext'
 import { FAR_AWAY, layersAt, nextLayerBoundary } from './layerBoundaries'
 import { FARTHEST_KNOWN, type ClearAir } from './clearAir'
 import { addPair, seenClouds, seenState, endStratum, type SeenClouds } from './seenPoints'
+import { cloudySteps, keepLastClear, lastClear } from './edges'
 import { advance, enterSteps, nextSteps, stepState } from './steps'
 
 /**
@@ -83,6 +92,7 @@ export function marchClouds(
   /** Pairs of samples so far, of all segments. */
   const pairs = int(0).toVar() as Variable<Int>
   const position = float(0).toVar()
+  const last = lastClear()
   /** Distance of the first layer; 0 before. */
   const entry = float(0).toVar()
   /** Distance of the first cloud; 0 before. */
@@ -121,12 +131,19 @@ export function marchClouds(
     const middle = sampleAt(position.add(length))
     const { range } = segment
     const clouds = samplePair(field, weatherMap, clear, middle, length, direction, range)
-    const found = { ...clouds, greatest: clouds.greatest.mul(light.depthScale) }
+    const found = {
+      ...clouds,
+      extinction: clouds.extinction.mul(light.depthScale).toConst() as Vec2,
+      greatest: clouds.greatest.mul(light.depthScale)
+    }
     const accept = (): void => {
       first.assign(select(first.equal(0), position.max(1), first))
-      addPair(seen, clouds.extinction.mul(light.depthScale).mul(length).toConst(), places)
+      const { lengths, middles } = cloudySteps(last, places, clouds.strength, length)
+      addPair(seen, found.extinction.mul(lengths).toConst(), middles, lengths)
     }
-    position.addAssign(advance(state, pair, quality, found, accept))
+    const forward = advance(state, pair, quality, found, accept)
+    keepLastClear(last, places, clouds.strength, forward.lessThan(length.mul(2)).toConst())
+    position.addAssign(forward)
   }
 
   const skipClear = (): void => {

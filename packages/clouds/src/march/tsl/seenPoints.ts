@@ -102,15 +102,21 @@ function seenFromMiddle(depth: Vec2): Vec2 {
 }
 
 /**
- * Adds two steps of the same length: energy-conserving integration, L += T S (1 − e^{−τ}) for steps of any length. The source S
+ * Adds two steps: energy-conserving integration, L += T S (1 − e^{−τ}) for steps of any length. The source S
  * is left open: one place of each stratum of opacity stands for it, the middle of the cloud that takes most
  * of it.
  *
  * @param depth - Scaled optical depths of both steps.
- * @param places - Distances of their middles, where samples were taken [m].
+ * @param places - Distances of the middles of what of them is cloud [m].
+ * @param lengths - Lengths of that [m].
  * @see Hillaire 2016, "Physically based sky, atmosphere and cloud rendering in Frostbite" §5.6.3
  */
-export function addPair(state: SeenState, depth: Vec2, places: readonly Float[]): void {
+export function addPair(
+  state: SeenState,
+  depth: Vec2,
+  places: readonly Float[],
+  lengths: Vec2
+): void {
   const { transmittance, distances, shares, index, run, most, latest, weightedDistance } = state
   const through = depth.negate().exp().toConst() as Vec2
   const seen = vec2(
@@ -118,7 +124,7 @@ export function addPair(state: SeenState, depth: Vec2, places: readonly Float[])
     transmittance.mul(through.x).mul(through.y.oneMinus())
   ).toConst() as Vec2
   const both = seen.x.add(seen.y).toConst()
-  const aside = seenFromMiddle(depth).mul(places[1].sub(places[0])).toConst()
+  const aside = seenFromMiddle(depth).mul(lengths).toConst()
   const weighted = places[0]
     .add(aside.x)
     .mul(seen.x)
