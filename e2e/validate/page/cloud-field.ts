@@ -4,6 +4,7 @@ import { FloatType, PerspectiveCamera, RenderTarget, Vector3 } from 'three'
 import { Fn, If, float, screenCoordinate, uniform, vec4 } from 'three/tsl'
 import type { Node, NodeFrame, WebGPURenderer } from 'three/webgpu'
 import { FragmentPass } from '../../../packages/atmosphere/src/tables/FragmentPass'
+import { billowForm } from '../../../packages/clouds/src/density/formConstants'
 import { componentAt } from '../../../packages/clouds/src/density/tsl/componentAt'
 import {
   forLayers,
@@ -59,6 +60,9 @@ declare global {
 /** Samples of a cell along each axis: their mean is the cell's. */
 const SAMPLES = 2
 
+/** Texels of billows over the samples' distance on cells of 20 m. */
+const BILLOWS = 1.6
+
 /** Levels of clear air below the lowest base. */
 const CLEAR_LEVELS = 5
 
@@ -99,8 +103,8 @@ async function openField(request: CloudFieldRequest): Promise<OpenField> {
   field.bake(renderer)
   const camera = new PerspectiveCamera()
   camera.updateMatrixWorld()
-  // Details down to a sample's width are wanted.
-  field.pixelAngle.value = 1
+  // Details down to a sample's width are wanted, and billows down to their texels.
+  field.pixelAngle.value = BILLOWS / billowForm.footprints
 
   const altitudes = [...layers].map(layer => layer.parameters)
   // Bases are edges only where clear air is below them.

@@ -10,7 +10,7 @@ import { NOT_SAMPLED } from '../../density/tsl/samplePair'
 export type LastClear = Variable<Vec2>
 
 /** Of a ray that has met nothing yet. To be called inside of a shader function. */
-export const lastClear = (): LastClear => vec2(0, NOT_SAMPLED).toVar() as LastClear
+export const lastClear = (): LastClear => vec2(0, NOT_SAMPLED).toVar()
 
 /** Two steps, less what of them lies before a cloud. */
 export interface CloudySteps {
@@ -35,7 +35,7 @@ function cloudBefore(strength: Float, clear: Float, gap: Float, length: Float): 
     .and(clear.lessThan(0))
     .and(clear.greaterThan(NOT_SAMPLED / 2))
   const inside = strength.div(strength.sub(clear)).mul(gap).min(length)
-  return select(begins, inside, length.mul(0.5)) as Float
+  return select(begins, inside, length.mul(0.5))
 }
 
 /**
@@ -58,7 +58,7 @@ export function cloudySteps(
   const behind = length.mul(0.5)
   const middleOf = (i: number): Float => places[i].add(behind.sub(inside[i]).mul(0.5)).toConst()
   return {
-    lengths: vec2(inside[0], inside[1]).add(behind).toConst() as Vec2,
+    lengths: vec2(inside[0], inside[1]).add(behind).toConst(),
     middles: [middleOf(0), middleOf(1)]
   }
 }
