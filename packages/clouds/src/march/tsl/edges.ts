@@ -9,10 +9,10 @@ import { NOT_SAMPLED } from '../../density/tsl/samplePair'
 /** The last sample of a ray that was clear: its distance [m], and its strength, or `NOT_SAMPLED`. */
 export type LastClear = Variable<Vec2>
 
-/** Of a ray that has met nothing yet. To be called inside of a shader function. */
+/** Last clear sample of a ray that has met nothing yet. To be called inside of a shader function. */
 export const lastClear = (): LastClear => vec2(0, NOT_SAMPLED).toVar()
 
-/** Two steps, less what of them lies before a cloud. */
+/** Cloudy parts of two steps. */
 export interface CloudySteps {
   /** Lengths of cloud [m]. */
   readonly lengths: Vec2
@@ -39,7 +39,7 @@ function cloudBefore(strength: Float, clear: Float, gap: Float, length: Float): 
 }
 
 /**
- * What of a pair of steps is cloud.
+ * Cloudy parts of a pair of steps.
  *
  * @param places - Distances of both samples [m].
  * @param strength - Strengths of both.
