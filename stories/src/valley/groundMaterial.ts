@@ -8,7 +8,6 @@ import {
   Fn,
   If,
   mix,
-  normalWorldGeometry,
   positionView,
   positionWorld,
   sin,
@@ -241,7 +240,7 @@ export function groundMaterial(
   const fine = grain.add(clumps).add(patches).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
   const rough = broad.mul(0.5).add(patches).toVar()
-  const broadNormal = relief.normal(normalWorldGeometry).toConst()
+  const broadNormal = relief.normal().toConst()
   const slope = broadNormal.y.oneMinus().add(fine.mul(0.02)).add(rough.mul(0.07)).toVar()
   const field = cover.y
   // Woods have edges: between the grid's vertices noise tells where they are.

@@ -29,9 +29,36 @@ import { LAKE } from './places'
 type Float = Node<'float'>
 type Vec2 = Node<'vec2'>
 
-/** Edge of the square that the map covers, and its middle along the valley [m]. */
-const WIDTH = 26_000
+/** Middle of the map along the valley, and distance from it to its edges [m]: all land that is drawn. */
 const MIDDLE = -3500
+const EXTENT = 48_500
+
+/** Distance from the middle up to which texels are all alike [m], and the part of the map that is within it. Further out they grow. */
+const EVEN = 11_000
+const EVEN_PART = 0.8
+
+/** Metres for each unit of the map's half width in its even part, and growth of that beyond [1/m]. */
+const UNIT = EVEN / EVEN_PART
+const GROWTH = (EXTENT - EVEN - UNIT * (1 - EVEN_PART)) / (1 - EVEN_PART) ** 2
+
+/** Distance from the middle along both axes, of a place in the map whose middle is 0 and whose edges are ±1 [m]. */
+function fromMiddle(at: Vec2): Vec2 {
+  const beyond = at.abs().sub(EVEN_PART).max(0)
+  return at.mul(UNIT).add(beyond.mul(beyond).mul(GROWTH).mul(at.sign()))
+}
+
+/** Place in the map of a distance from the middle: the inverse of `fromMiddle`. */
+function inMap(distance: Vec2): Vec2 {
+  const size = distance.abs().toConst()
+  const beyond = size.sub(EVEN).max(0)
+  const grown = beyond
+    .mul(4 * GROWTH)
+    .add(UNIT ** 2)
+    .sqrt()
+    .sub(UNIT)
+    .div(2 * GROWTH)
+  return size.min(EVEN).div(UNIT).add(grown).mul(distance.sign())
+}
 
 /** Pseudo-random direction of a lattice point, along which an offset from it is measured: the noise's gradient. */
 const gradient = /*#__PURE__*/ Fn(([cell, offset]: [Vec2, Vec2]) => {
@@ -156,14 +183,20 @@ export class Relief {
 
   /** @param size - Texels along an edge. */
   constructor(size: number) {
-    const texel = WIDTH / size
-    const finest = float(2 * texel)
-    const place = uv().sub(0.5).mul(WIDTH).add(vec2(0, MIDDLE)).toConst()
-    const rise = (across: Vec2): Float =>
+    const at = uv().sub(0.5).mul(2).toConst()
+    const place = fromMiddle(at).add(vec2(0, MIDDLE)).toConst()
+    const beyond = at.abs().sub(EVEN_PART).max(0)
+    const texel = beyond
+      .mul(2 * GROWTH)
+      .add(UNIT)
+      .mul(2 / size)
+      .toConst()
+    const finest = max(texel.x, texel.y).mul(2).toConst()
+    const rise = (across: Vec2, length: Float): Float =>
       flatHeight(place.add(across), finest)
         .sub(flatHeight(place.sub(across), finest))
-        .div(2 * texel)
-    const slopes = vec2(rise(vec2(texel, 0)), rise(vec2(0, texel)))
+        .div(length.mul(2))
+    const slopes = vec2(rise(vec2(texel.x, 0), texel.x), rise(vec2(0, texel.y), texel.y))
     this.#map = rtt(slopes, size, size, {
       type: HalfFloatType,
       format: RGFormat,
@@ -177,18 +210,12 @@ export class Relief {
     })
   }
 
-  /**
-   * Normal of the ground in world space.
-   *
-   * @param coarse - That of the grid, beyond the map.
-   */
-  normal(coarse: Node<'vec3'>): Node<'vec3'> {
+  /** Normal of the ground in world space. */
+  normal(): Node<'vec3'> {
     const { x, z } = positionWorld
-    const at = vec2(x, z.sub(MIDDLE)).div(WIDTH).toConst()
+    const at = inMap(vec2(x, z.sub(MIDDLE))).mul(0.5)
     const slopes = (this.#map.sample(at.add(0.5)) as unknown as Node<'vec2'>).toConst()
-    const fine = vec3(slopes.x.negate(), 1, slopes.y.negate()).normalize()
-    const fromMiddle = max(at.x.abs(), at.y.abs())
-    return mix(fine, coarse, smoothstep(0.42, 0.5, fromMiddle)).normalize()
+    return vec3(slopes.x.negate(), 1, slopes.y.negate()).normalize()
   }
 
   /** Frees the map. */
