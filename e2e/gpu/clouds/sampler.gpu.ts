@@ -4,7 +4,7 @@ import type { Node } from 'three/webgpu'
 import { layerAt } from '../../../packages/clouds/src/density/tsl/layer'
 import type { CloudSample } from '../../../packages/clouds/src/density/tsl/sample'
 import {
-  extinctionNearby,
+  extinctionsNearby,
   sampleLayerPair,
   weatherCacheAt
 } from '../../../packages/clouds/src/density/tsl/sampler'
@@ -63,7 +63,7 @@ gpuTest(
           const weather = weatherCacheAt(field, sample, range)
           const layer = layerAt(field, int(0))
           const shadow = sampleLayerPair(field, layer, sample, [sample, sample]).x
-          const light = extinctionNearby(field, weather, sample)
+          const [, light] = extinctionsNearby(field, weather, [sample, sample])
           return vec4(cloudExtinction(field, sample, false), shadow, light, extinction.x)
         })
         let lit = 0

@@ -79,16 +79,25 @@ export function detail(
   const octave = (period: number): Float[] => {
     const level = levelOf(width.div(period), 1 / NOISE_SIZE.detail)
     return points.map(
-      point => decoded(field.textures.detail.sample(point.div(period)).level(level)).x
+      point => field.textures.detail.sample(point.div(period)).level(level).x as Float
     )
   }
-  const sums = octave(1).map(noise => noise.toVar() as Float)
-  for (const [period, amplitude] of NEARER) {
+  const coarsest = octave(1).map(noise => noise.toConst() as Float)
+  // Decoded after all reads: none waits for another.
+  const nearer = NEARER.map(([period]) => {
+    const read = points.map(() => float(0.5).toVar() as Float)
     If(width.lessThan(NEARER_FROM * period), () => {
-      octave(period).forEach((noise, i) => sums[i].addAssign(noise.mul(amplitude)))
+      octave(period).forEach((noise, i) => read[i].assign(noise))
     })
-  }
-  return sums
+    return read
+  })
+  const deviation = (noise: Float): Float => noise.sub(0.5).div(ENCODING_SCALE)
+  return coarsest.map((noise, i) =>
+    NEARER.reduce(
+      (sum, [, amplitude], k) => sum.add(deviation(nearer[k][i]).mul(amplitude)),
+      deviation(noise)
+    ).toConst()
+  )
 }
 
 /** Most that detail adds, per its strength [–]. */

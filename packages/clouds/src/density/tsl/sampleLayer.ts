@@ -39,6 +39,8 @@ export interface SampleOptions {
   readonly unresolved?: Unresolved
   /** Direction of the ray on which they are met, in the mapped space; left out, straight up. */
   readonly direction?: Vec3
+  /** True for places that are not near each other: unresolved clouds are asked for at each. */
+  readonly areApart?: boolean
   /** In layers of storms, the one nearest to the samples; left out, it is looked for. */
   readonly storm?: StormNearby
 }
@@ -130,7 +132,7 @@ export function sampleLayerAt(
   background: PackedBackground,
   middle: CloudSample,
   samples: readonly CloudSample[],
-  { detail: hasDetail, unresolved = 'mean', direction, storm }: SampleOptions
+  { detail: hasDetail, unresolved = 'mean', areApart, direction, storm }: SampleOptions
 ): LayerSample[] {
   if (field.extinction)
     return samples.map(sample => {
@@ -167,21 +169,26 @@ export function sampleLayerAt(
       density.assign(densityOf(strength, edge).mul(full))
     })
   })
-  If(unresolvedFraction.greaterThan(0), () => {
+  const mixUnresolved = (from: number, to: number, { altitude }: CloudSample): void => {
     const covered = bodies
+      .slice(from, to)
       .map(({ weather: around }) => around.filteredCoverage())
       .reduce((sum, each) => sum.add(each))
-      .div(bodies.length)
+      .div(to - from)
       .toConst()
     If(covered.greaterThan(0), () => {
-      const height = heightIn(layer, middle.altitude).clamp().toConst() as Float
+      const height = heightIn(layer, altitude).clamp().toConst() as Float
       const cosine = direction?.dot(middle.up).toConst() as Float | undefined
       const mean = unresolvedDensity(field, layer, covered, height, unresolved, cosine)
-      for (const { density, strength } of found) {
+      for (const { density, strength } of found.slice(from, to)) {
         density.assign(mixedDensity(mean.columnDepth, density, mean.density, unresolvedFraction))
         strength.assign(strength.max(0))
       }
     })
+  }
+  If(unresolvedFraction.greaterThan(0), () => {
+    if (areApart) samples.forEach((sample, i) => mixUnresolved(i, i + 1, sample))
+    else mixUnresolved(0, samples.length, middle)
   })
   return found.map(({ density, strength }) => ({
     extinction: layer.density.mul(density).toConst(),

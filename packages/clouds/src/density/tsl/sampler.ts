@@ -3,7 +3,7 @@ import { select } from '../../select'
 import type { CloudField } from '../CloudField'
 import { hasStorms } from '../kinds'
 import type { WeatherMap } from '../WeatherMap'
-import type { Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
+import type { Bool, Float, Int, Vec2, Vec3, Vec4 } from '../../tsl-types'
 import { forLayers, heightIn, isWithin, layerAt, type LayerNodes, type LayerRange } from './layer'
 import { footprintOf, subpointOffset, type CloudSample } from './sample'
 import { sampleLayer, sampleLayerAt, type SampleOptions } from './sampleLayer'
@@ -105,23 +105,34 @@ export function weatherCacheAt(
 }
 
 /**
- * Extinction near a place whose weather was kept, of its densest layer, without detail [1/m]. Good as far as
+ * Extinctions near a place whose weather was kept, of its densest layer, without detail [1/m]. Good as far as
  * the weather on large scales is the same. Unresolved clouds have that inside of them: what light meets
  * there is not their mean.
+ *
+ * @param samples - Places, as far from the camera as the first: their texture reads do not wait for each other.
  */
-export function extinctionNearby(
+export function extinctionsNearby(
   field: CloudField,
   { background, layer: kept, storm }: WeatherCache,
-  sample: CloudSample
-): Float {
+  samples: readonly CloudSample[]
+): Float[] {
   const layer = layerAt(field, field.layers.length === 1 ? int(0) : kept)
-  const height = heightIn(layer, sample.altitude)
-  const extinction = float(0).toVar()
-  If(height.greaterThan(0).and(height.lessThan(1)), () => {
-    const options = { ...LIT, storm }
-    extinction.assign(sampleLayer(field, layer, background, sample, options).extinction)
+  const isInside = samples.map(({ altitude }): Bool => {
+    const height = heightIn(layer, altitude)
+    return height.greaterThan(0).and(height.lessThan(1)).toConst()
   })
-  return extinction
+  const extinctions = samples.map(() => float(0).toVar() as Float)
+  If(
+    isInside.reduce((any, each) => any.or(each)),
+    () => {
+      const options = { ...LIT, areApart: true, storm }
+      const found = sampleLayerAt(field, layer, background, samples[0], samples, options)
+      found.forEach(({ extinction }, i) => {
+        extinctions[i].assign(select(isInside[i], extinction, 0))
+      })
+    }
+  )
+  return extinctions
 }
 
 /**

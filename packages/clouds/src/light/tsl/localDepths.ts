@@ -1,7 +1,7 @@
 import { float, int, mix, smoothstep, vec4 } from 'three/tsl'
 import { select } from '../../select'
-import { footprintOf } from '../../density/tsl/sample'
-import { extinctionNearby } from '../../density/tsl/sampler'
+import { footprintOf, type CloudSample } from '../../density/tsl/sample'
+import { extinctionsNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
 import { LOWEST_COSINE } from './cloudLight'
@@ -53,6 +53,9 @@ const WIDEST = 1.5
  */
 const LIKELY_BELOW = 0.35
 
+/** Probes whose texture reads do not wait for each other, where shaders are compiled for the kinds of their layers. */
+const TOGETHER = 2
+
 /** Optical depths around a sample, not delta-scaled. */
 export interface LocalDepths {
   /** Depth from the sample to the light. */
@@ -99,9 +102,9 @@ export function localDepths(
   const count = asked.min(seen).toInt().toConst() as Int
   // Decks have no undersides but their own.
   const isIsolated = layered.lessThan(1)
-  const probes = count.add(select(isIsolated, int(2), int(1)))
-  // The density function is inlined once for all directions: shaders stay short.
-  loop('probe', probes, index => {
+  const probes = count.add(select(isIsolated, int(2), int(1))).toConst() as Int
+  const together = field.kinds === undefined ? 1 : TOGETHER
+  const placeOf = (index: Int): { place: CloudSample; add: (extinction: Float) => void } => {
     const isAside = index.greaterThanEqual(count).toConst()
     const isAbove = index.equal(count).toConst()
     // Steps grow from the sample on: (i/n)² of the way.
@@ -114,12 +117,24 @@ export function localDepths(
       .add(select(isAside, sample.up.mul(height), step) as Vec3)
       .toConst() as Vec3
     const { altitude, up } = field.view.localCoordinates(offset)
-    const { distance } = sample
-    const extinction = extinctionNearby(field, weather, { offset, altitude, up, distance })
-    const isFirst = index.equal(int(0))
-    const along = vec4(select(isFirst, extinction, 0), extinction.mul(end.sub(start)), 0, 0)
-    const aside = select(isAbove, vec4(0, 0, extinction, 0), vec4(0, 0, 0, extinction))
-    found.addAssign(select(isAside, aside, along))
+    const add = (extinction: Float): void => {
+      const isFirst = index.equal(int(0))
+      const along = vec4(select(isFirst, extinction, 0), extinction.mul(end.sub(start)), 0, 0)
+      const aside = select(isAbove, vec4(0, 0, extinction, 0), vec4(0, 0, 0, extinction))
+      const own = select(isAside, aside, along)
+      found.addAssign(select(index.lessThan(probes), own, vec4(0)))
+    }
+    return { place: { offset, altitude, up, distance: sample.distance }, add }
+  }
+  // The density function is inlined for few places at once, whatever their direction: shaders stay short.
+  loop('probes', probes.add(int(together - 1)).div(int(together)), turn => {
+    const places = Array.from({ length: together }, (_, i) =>
+      placeOf(turn.mul(int(together)).add(int(i)).toConst() as Int)
+    )
+    const samples = places.map(({ place }) => place)
+    extinctionsNearby(field, weather, samples).forEach((extinction, i) => {
+      places[i].add(extinction.toConst())
+    })
   })
   const beyond = sample.offset.add(toLight.mul(probed)).toConst() as Vec3
   const { toLight: far, through: all, stretch, inMap } = sampleShadows(shadows, beyond)

@@ -39,7 +39,7 @@ export function groundDistance(field: CloudField, cosView: Float): Float {
 }
 
 /**
- * Next layer boundary: the first place after a distance where a ray enters or leaves a layer.
+ * Next layer boundary: the first place after a distance where a ray enters or leaves a layer that covers anything.
  *
  * @param cosView - Ray against the zenith of the camera.
  * @returns Distance from the camera; `FAR_AWAY` if there is none [m].
@@ -50,12 +50,15 @@ export function nextLayerBoundary(field: CloudField, cosView: Float, distance: F
     next.assign(select(at.greaterThan(distance), next.min(at), next))
   }
   forLayers(field, index => {
-    const { baseAltitude, thickness } = layerAt(field, index)
-    for (const altitude of [baseAltitude, baseAltitude.add(thickness)]) {
-      const { near, far } = crossings(field, cosView, altitude)
-      consider(near)
-      consider(far)
-    }
+    const { baseAltitude, thickness, coverage } = layerAt(field, index)
+    // Steps begin anew behind a boundary: those of layers without clouds are none.
+    If(coverage.greaterThan(0), () => {
+      for (const altitude of [baseAltitude, baseAltitude.add(thickness)]) {
+        const { near, far } = crossings(field, cosView, altitude)
+        consider(near)
+        consider(far)
+      }
+    })
   })
   return next
 }
