@@ -115,8 +115,8 @@ export const NightOrbit: Story = {
   tags: ['screenshot', 'webgpu-only']
 }
 
-/** Europe's towns and the clouds about Africa at midnight under a full moon, which is behind the camera. */
+/** Towns of Europe and the Nile at midnight; over the Atlantic, clouds in moonlight. */
 export const NightGlobe: Story = {
   name: 'By night: 20,000 km',
-  args: { ...night, place: 'europe', day: Date.UTC(2026, 11, 23), hour: 22.7, exposure: -2 }
+  args: { ...night, place: 'europe', day: Date.UTC(2026, 11, 19), hour: 22.9, exposure: -1 }
 }

@@ -14,6 +14,7 @@ import { Ellipsoid } from '@welkin/geo'
 import { PerspectiveCamera } from 'three'
 import { expect, it } from 'vitest'
 import { float, vec4 } from 'three/tsl'
+import { townShares } from '../src/globe/cityLights'
 import { GlobeNight, type Night } from '../src/globe/GlobeNight'
 import { shadeNight, showClouds } from '../src/globe/worldClouds'
 import type { GlobeArgs } from '../src/globe.scene'
@@ -133,4 +134,17 @@ it('has its moonlight and the light of its sky dimmed by clouds', () => {
   for (const { overcast } of probes) expect(overcast).not.toBeNull()
   node.dispose()
   atmosphere.dispose()
+})
+
+it('has towns where a picture of the night is yellow, not where it is blue', () => {
+  const [black, sea, desert, town, city] = [
+    [0, 0, 0],
+    [4, 18, 48],
+    [30, 60, 84],
+    [120, 90, 60],
+    [255, 230, 190]
+  ].map(([r, g, b]) => townShares([r, g, b, 255])[0])
+  expect([black, sea, desert]).toEqual([0, 0, 0])
+  expect(town).toBeGreaterThan(20)
+  expect(city).toBeGreaterThan(2 * town)
 })
