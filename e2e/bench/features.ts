@@ -7,7 +7,7 @@ import { Valley, type ValleyState } from '../../stories/src/valley/Valley'
 import { gpuMilliseconds, nextFrame, release, type HeadlessDevice } from '../headless/device'
 
 /** Time of a frame on the scene's clock [s]. */
-const STEP = 1 / 15
+const STEP = 1 / 30
 
 /** Frames before the first feature is switched off. */
 const FIRST_FRAMES = 40
@@ -70,7 +70,7 @@ export async function measureFeatures(
     const meter = new FeatureMeter<Partial<ValleyState>>(off => valley.set({ ...state, ...off }))
     meter.start(meteredFeatures(state))
     while (meter.isMeasuring) {
-      meter.take(await draw())
+      meter.take(await draw(), 1)
       meter.update(STEP)
     }
     const shares = meter.shares.toSorted((a, b) => b.milliseconds - a.milliseconds)

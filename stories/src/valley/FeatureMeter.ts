@@ -15,15 +15,12 @@ export interface FeatureShare {
 const SETTLING = 0.8
 /** Frames after a switch that count as little. */
 const SETTLING_FRAMES = 12
-/** Time of a measurement, of which the median counts, and its least number of readings [s]. */
-const MEASURING = 0.6
-const READINGS = 3
-
-function median(values: readonly number[]): number {
-  const sorted = [...values].sort((a, b) => a - b)
-  const middle = sorted.length >> 1
-  return sorted.length % 2 === 1 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2
-}
+/**
+ * Time of a measurement, of which the mean counts, and its least number of frames with times: some work is done in
+ * every fourth or eighth frame only [s].
+ */
+const MEASURING = 0.8
+const FRAMES = 24
 
 /**
  * Measures the GPU time of each feature of a running scene: it is switched off for a while, and on again.
@@ -40,7 +37,9 @@ export class FeatureMeter<Off> {
   #step = 0
   #seconds = 0
   #frames = 0
-  #readings: number[] = []
+  /** GPU time of frames that were read, and their number. */
+  #sum = 0
+  #count = 0
   #isOff = false
   /** GPU time with all features, before the one that is off, and without it [ms]. */
   #before = 0
@@ -81,15 +80,16 @@ export class FeatureMeter<Off> {
     if (!this.isMeasuring) return
     this.#seconds += seconds
     this.#frames++
-    const isOver = this.#seconds >= SETTLING + MEASURING && this.#readings.length >= READINGS
-    if (isOver) this.#next(median(this.#readings))
+    const isOver = this.#seconds >= SETTLING + MEASURING && this.#count >= FRAMES
+    if (isOver) this.#next(this.#sum / this.#count)
   }
 
-  /** Takes the mean GPU time of some late frames [ms]. */
-  take(milliseconds: number): void {
+  /** Takes the GPU time of some late frames together [ms]. */
+  take(milliseconds: number, frames: number): void {
     if (!this.isMeasuring) return
     if (this.#seconds < SETTLING || this.#frames < SETTLING_FRAMES) return
-    this.#readings.push(milliseconds)
+    this.#sum += milliseconds
+    this.#count += frames
   }
 
   #switch(off: Off | undefined): void {
@@ -99,7 +99,7 @@ export class FeatureMeter<Off> {
 
   #wait(): void {
     this.#seconds = this.#frames = 0
-    this.#readings = []
+    this.#sum = this.#count = 0
   }
 
   #next(milliseconds: number): void {

@@ -117,7 +117,8 @@ export class Readout {
       .catch(() => ({ passes: [], frames: 0 }))
     this.#passes.push(...passes)
     this.#timedFrames += frames
-    if (frames > 0) this.#meter.take(passes.reduce((sum, [, time]) => sum + time, 0) / frames)
+    const spent = passes.reduce((sum, [, milliseconds]) => sum + milliseconds, 0)
+    this.#meter.take(spent, frames)
     this.#readings++
     this.#isReading = false
   }
