@@ -93,7 +93,7 @@ export const Valley: Story = {
 /** Early morning along the Jacksboro fault. */
 export const Ridges: Story = { args: { place: 'ridges', hour: 12 } }
 
-/** By night, with the world's clouds: on the post path they go and come at once. */
+/** Nights have the world's clouds: on the post path these go and come at once. */
 const night = { clouds: true, path: 'post' } as const
 
 /** Lit windows, lanes under lamps, and the moon over the end of the street. */

@@ -6,7 +6,7 @@ import { expect, it, vi } from 'vitest'
 import type { Explorer } from '../src/moving/Explorer'
 import type { SceneHandle } from '../src/scene'
 
-/** What a story gives `mount`. */
+/** Arguments that a story gives `mount`. */
 interface Mounted {
   readonly create: (canvas: HTMLCanvasElement, args: object) => Promise<SceneHandle<object>>
   readonly restartsWith?: (args: object) => string

@@ -13,6 +13,8 @@ export class ViewChange<View, Numbers extends Blended> {
   #next: View
   #from: Numbers
   #to: Numbers
+  /** Part that was there when the change began. */
+  #fromPart = 1
   #share = 1
   #seconds = 0
 
@@ -28,7 +30,8 @@ export class ViewChange<View, Numbers extends Blended> {
 
   /** Part of these that is there, in [0, 1]: 0 in the middle of a change. */
   get part(): number {
-    return Math.abs(2 * smoothed(this.#share) - 1)
+    const way = 2 * smoothed(this.#share) - 1
+    return way < 0 ? -way * this.#fromPart : way
   }
 
   /** Numbers on their way. */
@@ -53,6 +56,7 @@ export class ViewChange<View, Numbers extends Blended> {
    */
   go(view: View, numbers: Numbers, seconds: number): void {
     this.#from = this.numbers
+    this.#fromPart = this.part
     this.#to = numbers
     this.#next = view
     this.#seconds = seconds
