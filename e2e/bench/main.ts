@@ -5,6 +5,7 @@ import { airLine, PATHS, timeAir, timeBake, timeFirstFrame } from './air'
 import { bowLine, timeBows } from './bows'
 import { cloudLine, timeClouds, timeNoise } from './clouds'
 import { timeEnvironment } from './environment'
+import { measureFeatures } from './features'
 import { firstPictureLines, flightLine, measureFlight, timeFirstPictures } from './flight'
 import { lightningLine, timeLightning } from './lightning'
 import { crackLines, findCracks } from './cracks'
@@ -118,6 +119,9 @@ CPU            ${cpuMsPerFrame.toFixed(2)} ms a frame while the volume is update
   async switches() {
     return { switches: await measureSwitches(device, values.rows, log) }
   },
+  async features() {
+    return { features: await measureFeatures(device, size, values.rows, log) }
+  },
   async shell() {
     const shells = await timeShells(device, size, frames)
     for (const { model, outsideMs, insideMs } of shells) {
@@ -169,7 +173,7 @@ for (const name of only) {
 log(`device: ${device.name}, ${width}×${height}, medians of ${frames} frames\n`)
 const result: Record<string, unknown> = { device: device.name }
 /** Parts for which one asks: all of `clouds` has the showers, too; the others are no figures of cost. */
-const ASKED = new Set(['bows', 'showers', 'cracks', 'switches'])
+const ASKED = new Set(['bows', 'showers', 'cracks', 'switches', 'features'])
 const all = Object.keys(parts).filter(name => !ASKED.has(name))
 for (const name of only.length > 0 ? only : all) {
   Object.assign(result, await parts[name]())

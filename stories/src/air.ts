@@ -72,10 +72,13 @@ export class Air {
     }
   }
 
-  /** Has the picture set the exposure, on either path. */
-  expose(): AutoExposureNode {
+  /**
+   * Has the picture set the exposure, on either path.
+   *
+   * @param color - The picture; left out, the scene with its air.
+   */
+  expose(color: Node = this.post?.color ?? pass(this.scene, this.camera)): AutoExposureNode {
     const pipeline = (this.#pipeline ??= new RenderPipeline(this.renderer))
-    const color = this.post?.color ?? pass(this.scene, this.camera)
     const exposure = autoExposure(color, this.atmosphere)
     pipeline.outputNode = exposure
     return exposure

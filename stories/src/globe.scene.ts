@@ -7,14 +7,17 @@ import {
   SkyLightProbe,
   stars
 } from '@welkin/atmosphere'
+import { renderOutput, rtt } from 'three/tsl'
+import type { RenderPipeline } from 'three/webgpu'
 import { createCity } from './globe/city'
 import { GlobeNight, type NightFeatures } from './globe/GlobeNight'
 import { createLand, type Land } from './globe/land'
 import { worldClouds } from './globe/worldClouds'
 import { PLACES } from './globe/places'
 import type { PlaceName } from './globe/places'
-import { applyTime } from './scene'
+import { dateOf, EXPOSURE_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
+import { smoothEdges } from './valley/SmoothEdgesNode'
 
 export interface GlobeArgs extends RendererArgs, TimeArgs, NightFeatures {
   place: PlaceName
@@ -25,13 +28,30 @@ export interface GlobeArgs extends RendererArgs, TimeArgs, NightFeatures {
 /** The city is smaller than a pixel from higher up [m]. */
 const CITY_CEILING = 60_000
 
+/** Glare about the moon: little, since stars and the limb are beside it. */
+const GLARE = { innerStrength: 0.006, outerStrength: 0.001 }
+
+/** Strength by which nights lose their colours: of towns, some is left, as in pictures from space stations. */
+const SIGHT = 0.3
+
+/** Frames after which a still with clouds has settled. */
+const CLOUD_FRAMES = 6
+
+/** Smooths stairs along edges of a pipeline's picture, and leaves stars as they are. */
+function smoothPicture(pipeline: RenderPipeline): void {
+  pipeline.outputColorTransform = false
+  const shown = rtt(renderOutput(pipeline.outputNode), null, null, { depthBuffer: false })
+  pipeline.outputNode = smoothEdges(shown)
+}
+
 /** The Earth from a street to 20,000 km: pictures of all of it and terrain of one valley, in tiles, in a world that is ECEF, in metres. */
 export async function createGlobe(
   canvas: HTMLCanvasElement,
   args: GlobeArgs
 ): Promise<SceneHandle<GlobeArgs>> {
-  const addClouds = args.clouds ? await worldClouds() : undefined
-  const drawn: GlobeArgs = addClouds === undefined ? args : { ...args, path: 'post' }
+  const isPost = args.clouds || args.path === 'post'
+  const addClouds = isPost ? await worldClouds(args.frame) : undefined
+  const drawn: GlobeArgs = isPost ? { ...args, path: 'post' } : args
   const create = (land: Land) => {
     const { renderer, scene, camera, air, noise, townScale } = land
     const { atmosphere } = air
@@ -43,7 +63,8 @@ export async function createGlobe(
     const weather = addClouds?.(land)
     const nightfall = () => {
       // #region globe night
-      const luna = moon()
+      // #shown const luna = moon()
+      const luna = moon({ flare: GLARE }) // #hidden
       const nightSky = [milkyWay(), stars(), luna, airglow()] as const // far before near
       atmosphere.add(...nightSky)
       const moonlight = new MoonDirectionalLight(atmosphere, luna)
@@ -56,12 +77,19 @@ export async function createGlobe(
       return { sky: nightSky, lights }
     }
     const night = new GlobeNight(atmosphere, nightfall, weather?.cover)
+    const exposure = air.expose(weather?.node)
+    exposure.purkinjeShift = SIGHT
+    if (air.post !== undefined) smoothPicture(air.post.pipeline)
     return {
+      exposure,
+      warmUpFrames: isPost ? CLOUD_FRAMES : EXPOSURE_FRAMES,
       place: ({ place }: GlobeArgs) => PLACES[place],
       prepare: () => atmosphere.bake(renderer),
       apply(current: GlobeArgs) {
-        applyTime(renderer, air, current)
+        atmosphere.date = dateOf(current.day, current.hour)
+        exposure.compensation = current.exposure
         night.show(current)
+        weather?.show(current.clouds)
       },
       beforeDraw(altitude: number) {
         night.update(camera)
@@ -71,6 +99,7 @@ export async function createGlobe(
         city.object.visible = altitude < CITY_CEILING
       },
       dispose() {
+        exposure.dispose()
         weather?.dispose()
         night.dispose()
         city.dispose()

@@ -20,7 +20,7 @@ const partOfNight = (name: string): object => ({
 
 const meta: Meta<GlobeArgs> = {
   title: 'Globe',
-  render: mount(createGlobe, code, ({ clouds }) => String(clouds)),
+  render: mount(createGlobe, code, ({ clouds, path }) => String(clouds && path !== 'post')),
   argTypes: {
     place: {
       name: 'Camera',
@@ -29,7 +29,8 @@ const meta: Meta<GlobeArgs> = {
     },
     clouds: {
       name: 'Clouds',
-      description: "The world's, drawn over the finished picture",
+      description:
+        "The world's, drawn over the finished picture; on the forward path the scene is made anew for them",
       control: 'boolean'
     },
     stars: partOfNight('Stars and Milky Way'),
@@ -92,25 +93,30 @@ export const Valley: Story = {
 /** Early morning along the Jacksboro fault. */
 export const Ridges: Story = { args: { place: 'ridges', hour: 12 } }
 
-/** Lit windows, lanes under lamps, the moon. */
+/** Nights have the world's clouds: on the post path these go and come at once. */
+const night = { clouds: true, path: 'post' } as const
+
+/** Lit windows, lanes under lamps, and the moon over the end of the street. */
 export const NightStreet: Story = {
   name: 'By night: street',
-  args: { place: 'street', day: Date.UTC(2026, 6, 29), hour: 12 }
+  args: { ...night, place: 'street', day: Date.UTC(2026, 8, 24), hour: 17.25, exposure: -0.5 }
 }
 
+/** The city's lights, and the moon about to set among clouds. */
 export const NightRooftops: Story = {
   name: 'By night: 1 km',
-  args: { place: 'rooftops', day: Date.UTC(2026, 6, 29), hour: 12 }
+  args: { ...night, place: 'rooftops', day: Date.UTC(2026, 8, 24), hour: 18 }
 }
 
-/** Towns, airglow and stars. */
+/** America's towns beside moonlit clouds; airglow, stars, and the moon over the limb. */
 export const NightOrbit: Story = {
   name: 'By night: 400 km',
-  args: { place: 'orbit', hour: 15 },
+  args: { ...night, place: 'eastCoast', day: Date.UTC(2026, 0, 29), hour: 8.9, exposure: -0.75 },
   tags: ['screenshot', 'webgpu-only']
 }
 
+/** Towns of Europe and the Nile at midnight; over the Atlantic, clouds in moonlight. */
 export const NightGlobe: Story = {
-  name: 'By night: 20,000 km, with clouds',
-  args: { place: 'globe', hour: 15, exposure: 1, clouds: true }
+  name: 'By night: 20,000 km',
+  args: { ...night, place: 'europe', day: Date.UTC(2026, 11, 19), hour: 22.9, exposure: -1 }
 }

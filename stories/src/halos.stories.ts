@@ -1,7 +1,7 @@
 import type { Meta, StoryObj } from '@storybook/html-vite'
 import { createHalos } from './halos.scene'
 import type { HalosArgs } from './halos.scene'
-import { VIEWS } from './halosViews'
+import { argsOf, VIEWS } from './halosViews'
 import { mount } from './mount'
 import { choiceOf, rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
@@ -21,9 +21,13 @@ const share = (name: string, description: string) => ({
 
 const meta: Meta<HalosArgs> = {
   title: 'Bows and halos',
-  render: mount(createHalos, code, ({ view }) => view),
+  render: mount(createHalos, code),
   argTypes: {
-    view: { name: 'View', ...choiceOf(VIEWS) },
+    view: {
+      name: 'View',
+      ...choiceOf(VIEWS),
+      description: 'Sets sun, droplets and exposure, too'
+    },
     sun: { name: 'Sun [°]', control: { type: 'range', min: 1, max: 60, step: 0.5 } },
     dropletRadius: {
       name: 'Droplets [µm]',
@@ -39,11 +43,9 @@ const meta: Meta<HalosArgs> = {
   },
   args: {
     view: 'halo',
-    sun: VIEWS.halo.sun,
-    dropletRadius: 9,
+    ...argsOf(VIEWS.halo),
     regular: 0.7,
     level: 0.5,
-    exposure: 0,
     forceWebGL: false,
     path: 'post',
     frame: false
@@ -57,7 +59,6 @@ type Story = StoryObj<HalosArgs>
 /** A winter noon: thin cirrus, a halo of 22° about the sun, and sun dogs beside it. */
 export const Halo: Story = {
   name: 'Halo and sun dogs',
-  args: { exposure: -1.5 },
   tags: ['screenshot', 'webgpu-only']
 }
 
@@ -65,27 +66,27 @@ export const Halo: Story = {
 export const Glory: Story = {
   name: 'Glory from an aeroplane',
   tags: ['screenshot', 'webgpu-only'],
-  args: { view: 'glory', sun: VIEWS.glory.sun, dropletRadius: 8, exposure: -1 }
+  args: { view: 'glory', ...argsOf(VIEWS.glory) }
 }
 
 /** A white bow of 40° about the glory, whole through a wide lens. */
 export const Cloudbow: Story = {
   name: 'Cloudbow from an aeroplane',
-  args: { view: 'cloudbow', sun: VIEWS.cloudbow.sun, dropletRadius: 12, exposure: -0.75 }
+  args: { view: 'cloudbow', ...argsOf(VIEWS.cloudbow) }
 }
 
 /** A light shower all about, the sun behind one's back: both bows, and the dark band between them. */
 export const Rainbow: Story = {
-  args: { view: 'rainbow', sun: VIEWS.rainbow.sun }
+  args: { view: 'rainbow', ...argsOf(VIEWS.rainbow) }
 }
 
 /** The sun behind one's back, and mist before one. */
 export const Fogbow: Story = {
   tags: ['screenshot', 'webgpu-only'],
-  args: { view: 'fogbow', sun: VIEWS.fogbow.sun }
+  args: { view: 'fogbow', ...argsOf(VIEWS.fogbow) }
 }
 
 /** The sun behind a thin even cloud of small droplets, exposed for it: an aureole that ends in brown, and coloured rings around. */
 export const Corona: Story = {
-  args: { view: 'corona', sun: VIEWS.corona.sun, dropletRadius: 6, exposure: -5 }
+  args: { view: 'corona', ...argsOf(VIEWS.corona) }
 }

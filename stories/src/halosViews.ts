@@ -6,8 +6,10 @@ export const FIELD_OF_VIEW = 62
 /** A sky, and where the camera looks. */
 export interface View {
   readonly label: string
-  /** Null for mist about the ground. */
+  /** Null for mist or a shower about the ground. */
   readonly clouds: CloudPresetName | null
+  /** True for a shower in place of mist. */
+  readonly rains?: true
   /** Parameters of their layer that differ. */
   readonly layer?: Partial<CloudLayerParameters>
   /** Altitude of the camera [m]. */
@@ -20,6 +22,10 @@ export interface View {
   readonly azimuth: 0 | 180
   /** Elevation of the sun that it is made for [°]. */
   readonly sun: number
+  /** Effective radius of its droplets [µm]; 9 if left out. */
+  readonly dropletRadius?: number
+  /** Exposure [stops]; 0 if left out. */
+  readonly exposure?: number
 }
 
 /** The thinner a deck is, the more of its light is scattered once; the evener it is, the rounder are its rings. */
@@ -35,7 +41,9 @@ export const VIEWS = {
     pitch: -38,
     lens: 18,
     azimuth: 180,
-    sun: 38
+    sun: 38,
+    dropletRadius: 8,
+    exposure: -1
   },
   cloudbow: {
     label: 'Cloudbow about a glory',
@@ -45,10 +53,20 @@ export const VIEWS = {
     pitch: -45,
     lens: 90,
     azimuth: 180,
-    sun: 45
+    sun: 45,
+    dropletRadius: 12,
+    exposure: -0.75
   },
   fogbow: { label: 'Fogbow', clouds: null, altitude: 12, pitch: 12, azimuth: 180, sun: 15 },
-  rainbow: { label: 'Rainbow', clouds: null, altitude: 10, pitch: 18, azimuth: 180, sun: 14 },
+  rainbow: {
+    label: 'Rainbow',
+    clouds: null,
+    rains: true,
+    altitude: 10,
+    pitch: 18,
+    azimuth: 180,
+    sun: 14
+  },
   halo: {
     label: 'Halo and sun dogs',
     clouds: 'cirrus',
@@ -56,7 +74,8 @@ export const VIEWS = {
     altitude: 2,
     pitch: 20,
     azimuth: 0,
-    sun: 22
+    sun: 22,
+    exposure: -1.5
   },
   corona: {
     label: 'Corona',
@@ -66,6 +85,15 @@ export const VIEWS = {
     pitch: 28,
     lens: 24,
     azimuth: 0,
-    sun: 28
+    sun: 28,
+    dropletRadius: 6,
+    exposure: -5
   }
 } as const satisfies Record<string, View>
+
+/** Arguments of the story that a view sets. */
+export const argsOf = ({ sun, dropletRadius = 9, exposure = 0 }: View) => ({
+  sun,
+  dropletRadius,
+  exposure
+})

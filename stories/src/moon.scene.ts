@@ -13,6 +13,7 @@ import {
 import { renderGroup, uniform } from 'three/tsl'
 import { Air } from './air'
 import { Explorer } from './moving/Explorer'
+import { travel, TURN_SECONDS } from './moving/travel'
 import { randomSequence } from './random'
 import { changeOf, createRenderer, dateOf, disposeMeshes, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
@@ -127,15 +128,16 @@ export async function createMoon(
 
   const aim = new Vector3()
   const isAimedAnew = changeOf()
-  const lookAtTarget = (): void => {
-    const { direction } = luna.seenFrom(camera.position)
+  const isMoved = changeOf()
+  const lookAtTarget = (moved: PerspectiveCamera): void => {
+    const { direction } = luna.seenFrom(moved.position)
     aim.copy(current.target === 'moon' ? direction : atmosphere.sunDirection)
     const level = Math.hypot(aim.x, aim.z)
     const elevation = Math.atan2(aim.y, level) - (current.lower * Math.PI) / 180
     const [east, south] = [aim.x / level, aim.z / level]
     const across = Math.cos(elevation)
     aim.set(east * across, Math.sin(elevation), south * across)
-    camera.lookAt(aim.add(camera.position))
+    moved.lookAt(aim.add(moved.position))
   }
   const apply = (): void => {
     const { longitude, latitude, day, hour, target, lower } = current
@@ -143,7 +145,10 @@ export async function createMoon(
     atmosphere.date = dateOf(day, hour)
     luna.phase = current.setPhase ? current.phase : null
     // What else changes leaves the view as one has turned it.
-    if (isAimedAnew([longitude, latitude, day, hour, target, lower])) lookAtTarget()
+    const isAimedElsewhere = isAimedAnew([target, lower])
+    // Through a telescope one follows what moves on.
+    if (isMoved([longitude, latitude, day, hour])) travel(explorer, camera, lookAtTarget, 0)
+    else if (isAimedElsewhere) travel(explorer, camera, lookAtTarget, TURN_SECONDS)
     camera.fov = current.fieldOfView
     camera.updateProjectionMatrix()
     // Not in the tone mapping: half floats hold neither a night's light nor the sun's disc.

@@ -25,6 +25,7 @@ import {
 import { CONSTELLATIONS } from './night/constellations'
 import type { Constellation, ConstellationName } from './night/constellations'
 import { Explorer } from './moving/Explorer'
+import { travel, TURN_SECONDS } from './moving/travel'
 import { changeOf, createRenderer, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
@@ -103,6 +104,8 @@ export async function createNight(
   }
 
   const isAimedAnew = changeOf()
+  /** Undefined before the first constellation, which is in sight at once. */
+  let mover: Explorer | undefined
   const apply = (): void => {
     const chart = CONSTELLATIONS[current.constellation]
     atmosphere.place(chart.place)
@@ -110,7 +113,9 @@ export async function createNight(
     toWorld.copy(atmosphere.worldToECEF).invert().multiply(eciToECEF(atmosphere.date))
     if (isAimedAnew([current.constellation])) {
       const middle = drawChart(chart)
-      camera.lookAt(camera.position.clone().add(middle))
+      const turn = (moved: PerspectiveCamera): void =>
+        moved.lookAt(middle.clone().add(moved.position))
+      travel(mover, camera, turn, TURN_SECONDS)
       house.position.set(middle.x, 0, middle.z).setLength(25).setY(2)
       house.position.x += 9
     }
@@ -120,6 +125,7 @@ export async function createNight(
     lines.material.color.set('#3d6f96')
   }
   apply()
+  mover = explorer
 
   const draw = (): void => {
     explorer?.update(elapsed())

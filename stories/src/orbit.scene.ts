@@ -11,6 +11,7 @@ import { Ellipsoid } from '@welkin/geo'
 import { PerspectiveCamera, Scene, Vector3 } from 'three'
 import { earthPictures } from './globe/earthPictures'
 import { Explorer } from './moving/Explorer'
+import { FLIGHT_SECONDS, travel } from './moving/travel'
 import { changeOf, createRenderer, exposureOf, frameClock, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
@@ -55,7 +56,7 @@ export async function createOrbit(
       })
   const elapsed = frameClock(args.frame)
 
-  const moveCamera = (): void => {
+  const placeCamera = (moved: PerspectiveCamera): void => {
     const angle = (current.angle * Math.PI) / 180
     // A circle through the point under the sun, 35° from the equator's direction.
     const start = atmosphere.sunDirection
@@ -64,21 +65,24 @@ export async function createOrbit(
     const up = start.clone().multiplyScalar(Math.cos(angle)).addScaledVector(ahead, Math.sin(angle))
     const forward = ahead.multiplyScalar(Math.cos(angle)).addScaledVector(start, -Math.sin(angle))
     const height = current.altitude * 1000
-    camera.position.copy(up).multiplyScalar(Ellipsoid.WGS84.radii.x + height)
-    camera.up.copy(up)
+    moved.position.copy(up).multiplyScalar(Ellipsoid.WGS84.radii.x + height)
+    moved.up.copy(up)
     // At the limb.
     const dip = Math.acos(Ellipsoid.WGS84.radii.x / (Ellipsoid.WGS84.radii.x + height))
     const target = forward.multiplyScalar(Math.cos(dip)).addScaledVector(up, -Math.sin(dip))
-    camera.lookAt(camera.position.clone().addScaledVector(target, 1e6))
+    moved.lookAt(moved.position.clone().addScaledVector(target, 1e6))
   }
   const isMoved = changeOf()
+  /** Undefined before the first view, which is there at once. */
+  let mover: Explorer | undefined
   const apply = (): void => {
     const { altitude, angle, fieldOfView } = current
-    if (isMoved([altitude, angle])) moveCamera()
+    if (isMoved([altitude, angle])) travel(mover, camera, placeCamera, FLIGHT_SECONDS)
     camera.fov = fieldOfView
     camera.updateProjectionMatrix()
   }
   apply()
+  mover = explorer
 
   const draw = (): void => {
     explorer?.update(elapsed())

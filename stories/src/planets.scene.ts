@@ -11,6 +11,7 @@ import { Matrix4, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { Air } from './air'
 import { earthPictures } from './globe/earthPictures'
 import { Explorer } from './moving/Explorer'
+import { FLIGHT_SECONDS, travel } from './moving/travel'
 import { changeOf, createRenderer, exposureOf, frameClock, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
@@ -111,11 +112,14 @@ export async function createPlanets(
   const keyOf = ({ planet, dust }: PlanetsArgs): string => `${planet} ${dust}`
 
   const isMoved = changeOf()
-  const moveCamera = (): void => {
+  const placeCamera = (moved: PerspectiveCamera): void => {
+    moved.position.set(0, current.height, 0)
+    moved.rotation.set((current.pitch * Math.PI) / 180, 0, 0)
+  }
+  const moveCamera = (mover?: Explorer): void => {
     const { height, pitch, longitude, latitude } = current
     if (!isMoved([height, pitch, longitude, latitude])) return
-    camera.position.set(0, height, 0)
-    camera.rotation.set((pitch * Math.PI) / 180, 0, 0)
+    travel(mover, camera, placeCamera, FLIGHT_SECONDS)
   }
   // Before a link has its say.
   moveCamera()
@@ -123,7 +127,7 @@ export async function createPlanets(
   const apply = (): void => {
     if (shown === undefined) return
     const { atmosphere } = shown
-    moveCamera()
+    moveCamera(explorer)
     atmosphere.place({ longitude: current.longitude, latitude: current.latitude })
     atmosphere.setSunAngles(current.sunElevation, current.sunAzimuth)
     camera.fov = current.fieldOfView

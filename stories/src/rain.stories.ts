@@ -2,7 +2,7 @@ import type { Meta, StoryObj } from '@storybook/html-vite'
 import { mount } from './mount'
 import { createRain } from './rain.scene'
 import type { RainArgs } from './rain.scene'
-import { BOW_SUN, VIEWS } from './rainViews'
+import { VIEWS } from './rainViews'
 import { choiceOf, rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
@@ -16,9 +16,9 @@ const { forceWebGL, frame } = rendererArgTypes
 
 const meta: Meta<RainArgs> = {
   title: 'Rain and snow',
-  render: mount(createRain, code, ({ view }) => view),
+  render: mount(createRain, code),
   argTypes: {
-    view: { name: 'View', ...choiceOf(VIEWS) },
+    view: { name: 'View', ...choiceOf(VIEWS), description: 'Sets sun, rate and exposure, too' },
     sun: { name: 'Sun [°]', control: { type: 'range', min: 1, max: 60, step: 0.5 } },
     rate: {
       name: 'Rate [mm/h]',
@@ -42,11 +42,7 @@ const meta: Meta<RainArgs> = {
   },
   args: {
     view: 'shower',
-    sun: 30,
-    rate: 12,
-    virgaDepth: 0,
-    freezingLevel: 2300,
-    exposure: 0,
+    ...VIEWS.shower.args,
     forceWebGL: false,
     path: 'post',
     frame: false
@@ -64,16 +60,16 @@ export const Shower: Story = {}
 export const Bow: Story = {
   name: 'Bow in a shower',
   tags: ['screenshot'],
-  args: { view: 'bow', sun: BOW_SUN, rate: 8, exposure: -0.5 }
+  args: { view: 'bow', ...VIEWS.bow.args }
 }
 
 /** Snow that evaporates below altocumulus in a low sun: tails that curve away with the wind, of which the heaviest reach far down. */
 export const Virga: Story = {
-  args: { view: 'virga', sun: 6, rate: 4, virgaDepth: 900, freezingLevel: 0 }
+  args: { view: 'virga', ...VIEWS.virga.args }
 }
 
 /** Snow that falls slowly, and so trails far behind its clouds. */
 export const SnowShower: Story = {
   name: 'Snow shower',
-  args: { view: 'snow', sun: 18, rate: 1.5, freezingLevel: 0 }
+  args: { view: 'snow', ...VIEWS.snow.args }
 }

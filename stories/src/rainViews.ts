@@ -3,6 +3,20 @@ import type { CloudLayerParameters, CloudPrecipitation, CloudPresetName } from '
 /** Vertical field of view [°]. */
 export const FIELD_OF_VIEW = 62
 
+/** Arguments of the story that a view sets. */
+interface ViewArgs {
+  /** Elevation of the sun [°]. */
+  readonly sun: number
+  /** [mm/h] */
+  readonly rate: number
+  readonly virgaDepth: number
+  readonly freezingLevel: number
+  /** [stops] */
+  readonly exposure: number
+}
+
+const summer = { virgaDepth: 0, freezingLevel: 2300, exposure: 0 }
+
 /** A weather, and where the camera looks. */
 export interface View {
   readonly label: string
@@ -19,6 +33,8 @@ export interface View {
   readonly heading: number
   /** Pitch of the camera [°]. */
   readonly pitch: number
+  /** Sun, fall and exposure that it is made for. */
+  readonly args: ViewArgs
   /** Place of the camera [°]. */
   readonly place: { readonly longitude: number; readonly latitude: number }
 }
@@ -33,6 +49,7 @@ const besideShower = { longitude: 140.6426, latitude: 35.2626 }
 export const VIEWS = {
   shower: {
     label: 'Shower',
+    args: { ...summer, sun: 30, rate: 12 },
     clouds: 'shower',
     coverage: 0.2,
     layer: { baseAltitude: 1500 },
@@ -43,6 +60,7 @@ export const VIEWS = {
   },
   bow: {
     label: 'Bow in a shower',
+    args: { ...summer, sun: BOW_SUN, rate: 8, exposure: -0.5 },
     clouds: 'shower',
     fall: { streaks: 1 },
     coverage: 0.2,
@@ -54,6 +72,7 @@ export const VIEWS = {
   },
   virga: {
     label: 'Virga',
+    args: { sun: 6, rate: 4, virgaDepth: 900, freezingLevel: 0, exposure: 0 },
     clouds: 'altocumulus',
     coverage: 0.12,
     layer: {
@@ -71,6 +90,7 @@ export const VIEWS = {
   },
   snow: {
     label: 'Snow shower',
+    args: { ...summer, sun: 18, rate: 1.5, freezingLevel: 0 },
     clouds: 'snowShower',
     coverage: 0.1,
     azimuth: 280,

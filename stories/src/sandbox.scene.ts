@@ -1,6 +1,7 @@
 import type { AtmosphereParametersInit } from '@welkin/atmosphere'
 import { Mesh, MeshStandardMaterial, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { Explorer } from './moving/Explorer'
+import { travel, TURN_SECONDS } from './moving/travel'
 import { parametersOf } from './sandbox/airArgs'
 import type { AirArgs } from './sandbox/airArgs'
 import { planetGeometry } from './sandbox/planetMesh'
@@ -69,16 +70,15 @@ export async function createSandbox(
     center.set(0, -bottomRadius, 0)
     ground.geometry.dispose()
     ground.geometry = planetGeometry(bottomRadius)
-    placeCamera()
+    travel(undefined, camera, placeCamera, 0)
   }
 
-  const placeCamera = (): void => {
+  const placeCamera = (moved: PerspectiveCamera): void => {
     const { height, heading, pitch } = current
     const [turn, lift] = [-heading, pitch].map(angle => (angle * Math.PI) / 180)
     // Farther away the higher it is, so that it sees the things from above.
-    camera.position.set(0, height, 14 + Math.min(height, 200))
-    camera.rotation.set(lift, turn, 0, 'YXZ')
-    camera.updateMatrixWorld()
+    moved.position.set(0, height, 14 + Math.min(height, 200))
+    moved.rotation.set(lift, turn, 0, 'YXZ')
   }
 
   const applyAir = (): string[] => {
@@ -141,7 +141,7 @@ export async function createSandbox(
       const isMoved = (['height', 'heading', 'pitch'] as const).some(
         name => before[name] !== current[name]
       )
-      if (isMoved) placeCamera()
+      if (isMoved) travel(explorer, camera, placeCamera, TURN_SECONDS)
     },
     draw,
     async warmUp() {

@@ -4,6 +4,7 @@ import { MathUtils, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { Air } from './air'
 import { STILL_QUALITY } from './clouds/still'
 import { Explorer } from './moving/Explorer'
+import { FLIGHT_SECONDS, travel } from './moving/travel'
 import { createRenderer, drawSettled, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
@@ -41,13 +42,15 @@ export async function createStorm(
   const renderer = await createRenderer(canvas, args.forceWebGL)
   const scene = new Scene()
   const camera = new PerspectiveCamera(62, 1, 10, 2e6)
-  const { altitude, pitch } = VIEWS[args.view]
-  camera.position.y = altitude
-  camera.rotation.x = MathUtils.degToRad(pitch)
-  camera.updateMatrixWorld()
+  const placeCamera = (moved: PerspectiveCamera): void => {
+    const { altitude, pitch } = VIEWS[current.view]
+    moved.position.set(0, altitude, 0)
+    moved.rotation.set(MathUtils.degToRad(pitch), 0, 0)
+  }
   const explorer = args.frame ? undefined : new Explorer(camera, canvas)
   const elapsed = frameClock(args.frame)
   const current = { ...args }
+  travel(undefined, camera, placeCamera, 0)
   const air = new Air(renderer, scene, camera, 'post')
   const { atmosphere, sky } = air
   const { pipeline, color, depth } = air.post!
@@ -95,7 +98,10 @@ export async function createStorm(
     camera,
     explorer,
     current,
-    apply,
+    apply(before) {
+      apply()
+      if (before.view !== current.view) travel(explorer, camera, placeCamera, FLIGHT_SECONDS)
+    },
     draw,
     warmUp: () => drawSettled(current.frame ? FRAMES : 0, draw),
     dispose() {

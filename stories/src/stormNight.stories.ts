@@ -15,7 +15,7 @@ const { forceWebGL, frame } = rendererArgTypes
 
 const meta: Meta<StormArgs> = {
   title: 'Storm at night',
-  render: mount(createStorm, code, ({ view }) => view),
+  render: mount(createStorm, code),
   argTypes: {
     view: { name: 'View', ...choiceOf(VIEWS) },
     flashes: {

@@ -1,7 +1,7 @@
 import type { CloudQualityName } from '@welkin/clouds'
 import { STILL_QUALITY } from './clouds/still'
 import { Explorer } from './moving/Explorer'
-import { createRenderer, drawSettled, fitToCanvas, frameClock } from './scene'
+import { changeOf, createRenderer, drawSettled, fitToCanvas, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { ShownHour } from './ShownHour'
 import { HourArc } from './valley/HourArc'
@@ -41,7 +41,14 @@ export async function createValley(
   const explorer = current.frame
     ? undefined
     : new Explorer(camera, canvas, { groundAt: place => valley.groundAt(place) })
-  const readout = current.frame ? undefined : new Readout(canvas, renderer)
+  const shown = (): ValleyState => ({ ...stateOf(current), hour: shownHour.byHand })
+  /** Changes by which a feature is off that is measured. */
+  let off: Partial<ValleyState> = {}
+  const measured = (changes: Partial<ValleyState> = {}): void => {
+    off = changes
+    valley.set({ ...shown(), ...off })
+  }
+  const readout = current.frame ? undefined : new Readout(canvas, renderer, shown, measured)
   const setHour = (hour: number, isLast: boolean): void => {
     handle.update({ hour })
     if (isLast) handle.onArgs?.({ hour })
@@ -79,6 +86,8 @@ export async function createValley(
   const warmUp = (): void => {
     if (current.frame) ready = drawSettled(STILL.frames, draw, () => valley.exposure)
   }
+  const isOther = changeOf()
+  isOther({ ...current, hour: undefined })
   const handle: SceneHandle<ValleyArgs> = {
     renderer,
     scene,
@@ -101,7 +110,9 @@ export async function createValley(
       Object.assign(current, changes)
       const isSet = shownHour.take(current.hour, hour)
       // The clock is ahead of an hour that the scene has shown of itself.
-      valley.set({ ...stateOf(current), hour: shownHour.byHand }, current.frame)
+      // The clock goes on while features are measured.
+      if (isSet || isOther({ ...current, hour: undefined })) readout?.reset()
+      valley.set({ ...shown(), ...off }, current.frame)
       if (isSet) valley.cycle.hour = current.hour
       if (current.view !== view) goTo(current.view, 4)
       warmUp()

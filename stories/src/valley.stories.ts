@@ -81,17 +81,21 @@ const meta: Meta<ValleyArgs> = {
     haze: part('Haze'),
     mist: part('Mist'),
     precipitation: part('Rain and snow'),
+    wetGround: part('Wet ground and snow cover'),
     flashes: {
       ...part('Lightning'),
       description:
         'In storms; makes the scene anew. Off at first: flashes may harm people with photosensitive epilepsy'
     },
     moon: part('Moon'),
-    stars: part('Stars and Milky Way'),
+    moonlight: part('Moonlight on the land'),
+    stars: part('Stars'),
+    milkyWay: part('Milky Way'),
     airglow: part('Airglow'),
     flare: part("Sun's halo"),
     trees: part('Trees'),
-    village: part('Village and lamps'),
+    village: part('Village'),
+    lamps: part('Lamps and lit windows'),
     water: part('Lake'),
     environment: part('Sky in the lake'),
     autoExposure: part('Automatic exposure'),

@@ -33,12 +33,19 @@ export interface ValleyFeatures {
   haze: boolean
   mist: boolean
   precipitation: boolean
+  /** Wet ground and snow cover. */
+  wetGround: boolean
   moon: boolean
+  /** Moonlight on the land. */
+  moonlight: boolean
   stars: boolean
+  milkyWay: boolean
   airglow: boolean
   flare: boolean
   trees: boolean
   village: boolean
+  /** Lamps and lit windows of the village, by night. */
+  lamps: boolean
   water: boolean
   /** Sky and clouds in the lake beside what is in the picture. */
   environment: boolean
@@ -68,19 +75,22 @@ export function applyFactors(
   const { twilightSaturation, ambient, earthshine, purkinjeShift } = state
   const haze = Number(state.haze) * state.hazeStrength
   const shaftStrength = Number(state.shafts) * state.shaftStrength
-  const nightSky = Number(state.stars) * state.starlight
+  const starsStrength = Number(state.stars) * state.starlight
+  const milkyWay = Number(state.milkyWay) * state.starlight
   const glowStrength = Number(state.airglow) * state.airglowStrength
   const strength = Number(state.moon)
   // #region factors
   // #shown import { airStyle } from '@welkin/atmosphere'
   // #shown const [haze, twilightSaturation, ambient, shaftStrength] = [0.7, 1.3, 1.1, 0.8]
-  // #shown const [nightSky, glowStrength, strength, earthshine, purkinjeShift] = [2, 2, 1, 3, 1]
+  // #shown const [starsStrength, milkyWay, glowStrength] = [2, 2, 2]
+  // #shown const [strength, earthshine, purkinjeShift] = [1, 3, 1]
   // #shown const style = airStyle()
   // #shown atmosphere.add(style)
   style.set({ haze, twilightSaturation })
   node.ambient = ambient
   shafts.strength = shaftStrength
-  galaxy.intensity = starlight.intensity = nightSky
+  starlight.intensity = starsStrength
+  galaxy.intensity = milkyWay
   glow.intensity = glowStrength
   luna.set({ strength, earthshine })
   exposure.purkinjeShift = purkinjeShift // nights as eyes see them

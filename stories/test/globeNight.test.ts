@@ -1,6 +1,7 @@
 import {
   airglow,
   Atmosphere,
+  exposureFor,
   milkyWay,
   moon,
   MoonDirectionalLight,
@@ -13,8 +14,11 @@ import { Ellipsoid } from '@welkin/geo'
 import { PerspectiveCamera } from 'three'
 import { expect, it } from 'vitest'
 import { float, vec4 } from 'three/tsl'
+import { townShares } from '../src/globe/cityLights'
 import { GlobeNight, type Night } from '../src/globe/GlobeNight'
-import { shadeNight } from '../src/globe/worldClouds'
+import { shadeNight, showClouds } from '../src/globe/worldClouds'
+import type { GlobeArgs } from '../src/globe.scene'
+import * as stories from '../src/globe.stories'
 
 /** Sky and lights of a night. */
 function nightOf(atmosphere: Atmosphere): Night {
@@ -65,20 +69,55 @@ it('has stars, moon and airglow in a night as they were switched before it fell,
   atmosphere.dispose()
 })
 
-it('is exposed for what clouds let through', () => {
+it('falls earlier under clouds', () => {
   const atmosphere = new Atmosphere({ frame: 'ecef' })
-  atmosphere.date = new Date('2026-06-21T18:58:00Z')
   const camera = cameraAt(10)
-  const scaleUnder = (cover: CloudCover | null): number => {
-    const night = new GlobeNight(atmosphere, () => nightOf(atmosphere), cover)
-    night.update(camera)
-    night.dispose()
-    return atmosphere.luminanceScale
+  /** Minutes after 18:00 at which it falls. */
+  const dusk = (cover: CloudCover | null): number => {
+    let isNight = false
+    const fall = (): Night => {
+      isNight = true
+      return nightOf(atmosphere)
+    }
+    const night = new GlobeNight(atmosphere, fall, cover)
+    for (let minute = 0; minute < 180; minute++) {
+      atmosphere.date = new Date(Date.UTC(2026, 5, 21, 18, minute))
+      night.update(camera)
+      if (isNight) return minute
+    }
+    return Infinity
   }
-  const clear = scaleUnder(null)
-  expect(clear).toBeGreaterThan(1e-4)
-  expect(scaleUnder(new CloudCover(cloudPreset('overcast')))).toBeGreaterThan(1.5 * clear)
+  const clear = dusk(null)
+  // The sun sets there at 19:03.
+  expect(clear).toBeGreaterThan(45)
+  expect(clear).toBeLessThan(75)
+  expect(dusk(new CloudCover(cloudPreset('overcast')))).toBeLessThan(clear)
   atmosphere.dispose()
+})
+
+it('has clouds that go and come while the scene runs, and are not there for exposure then', () => {
+  const layers = cloudPreset('mixed')
+  const coverages = [...layers].map(({ coverage }) => coverage)
+  const cover = new CloudCover(layers)
+  const atmosphere = new Atmosphere({ frame: 'ecef' })
+  atmosphere.date = new Date('2026-06-21T12:00:00Z')
+  const exposure = () => exposureFor(atmosphere, cameraAt(10), { clouds: cover })
+  const clouded = exposure()
+  showClouds(layers, coverages, false)
+  expect([...layers].map(({ coverage }) => coverage)).toEqual([0, 0, 0])
+  expect(exposure()).toBeCloseTo(exposureFor(atmosphere, cameraAt(10)), 6)
+  showClouds(layers, coverages, true)
+  expect([...layers].map(({ coverage }) => coverage)).toEqual(coverages)
+  expect(exposure()).toBe(clouded)
+  atmosphere.dispose()
+})
+
+it('has clouds in all stories of nights, on the path that makes no new scene for them', () => {
+  const nights = Object.entries(stories).filter(([name]) => name.startsWith('Night'))
+  expect(nights).toHaveLength(4)
+  for (const [, { args }] of nights as [string, { args: GlobeArgs }][]) {
+    expect(args).toMatchObject({ clouds: true, path: 'post' })
+  }
 })
 
 it('has its moonlight and the light of its sky dimmed by clouds', () => {
@@ -95,4 +134,17 @@ it('has its moonlight and the light of its sky dimmed by clouds', () => {
   for (const { overcast } of probes) expect(overcast).not.toBeNull()
   node.dispose()
   atmosphere.dispose()
+})
+
+it('has towns where a picture of the night is yellow, not where it is blue', () => {
+  const [black, sea, desert, town, city] = [
+    [0, 0, 0],
+    [4, 18, 48],
+    [30, 60, 84],
+    [120, 90, 60],
+    [255, 230, 190]
+  ].map(([r, g, b]) => townShares([r, g, b, 255])[0])
+  expect([black, sea, desert]).toEqual([0, 0, 0])
+  expect(town).toBeGreaterThan(20)
+  expect(city).toBeGreaterThan(2 * town)
 })

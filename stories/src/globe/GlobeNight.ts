@@ -11,17 +11,13 @@ import type {
   Stars
 } from '@welkin/atmosphere'
 import { Ellipsoid } from '@welkin/geo'
-import { MathUtils, PerspectiveCamera } from 'three'
+import { PerspectiveCamera } from 'three'
 import type { Camera } from 'three'
 
-/** Illuminance of a street, and of what is seen from {@link HIGH} [lx]: pictures are exposed for no less. */
-const FLOOR = { street: 2, orbit: 0.01 }
-/** Altitude from which the floor is that of orbit [m]. */
-const HIGH = 100_000
-/** Stops that a picture may be darker than one that is exposed for: nights stay night, and days are as they are. */
-const DARKER = 2
-/** Height of the place that a picture from above is exposed for, at most [m]. */
-const EXPOSED_HEIGHT = 10_000
+/** Light of day over that of the land below the camera from which it is night. */
+const DUSK = 40
+/** Height of the place whose light tells day from night, at most [m]. */
+const HIGHEST = 10_000
 
 /** Parts of a night sky that one can do without. */
 export interface NightFeatures {
@@ -37,7 +33,7 @@ export interface Night {
   readonly lights: readonly [MoonDirectionalLight, SkyLightProbe, NightLightProbe]
 }
 
-/** Night over a globe, which is made when it first falls, and exposure for it. */
+/** Night over a globe, which is made when it first falls. */
 export class GlobeNight {
   #night: Night | undefined
   #features: NightFeatures = { stars: true, moon: true, airglow: true }
@@ -63,19 +59,15 @@ export class GlobeNight {
     glow.intensity = Number(airglow)
   }
 
-  /** Exposes for the land below a camera. */
+  /** Has night fall once the land below a camera is dark. */
   update(camera: Camera): void {
+    if (this.#night !== undefined) return
     const { atmosphere, clouds } = this
     const { longitude, latitude, height } = Ellipsoid.WGS84.ecefToGeodetic(camera.position)
-    const below = { longitude, latitude, height: Math.min(height, EXPOSED_HEIGHT) }
+    const below = { longitude, latitude, height: Math.min(height, HIGHEST) }
     Ellipsoid.WGS84.geodeticToECEF(below, this.#below.position)
     this.#below.updateMatrixWorld()
-    const part = Math.log(Math.max(height, 100) / 100) / Math.log(HIGH / 100)
-    const [low, high] = [Math.log(FLOOR.street), Math.log(FLOOR.orbit)]
-    const floor = Math.exp(MathUtils.lerp(low, high, Math.min(part, 1)))
-    const exposure = exposureFor(atmosphere, this.#below, { floor, clouds }) / 2 ** DARKER
-    atmosphere.luminanceScale = 1e-4 * Math.max(exposure, 1)
-    if (exposure <= 1 || this.#night !== undefined) return
+    if (exposureFor(atmosphere, this.#below, { clouds }) <= DUSK) return
     this.#night = this.nightfall()
     this.show(this.#features)
   }

@@ -20,6 +20,7 @@ import {
   fwidth,
   max,
   mix,
+  normalLocal,
   positionLocal,
   sin,
   smoothstep,
@@ -47,8 +48,8 @@ function stripes(x: Node<'float'>, period: number, width: number): Node<'float'>
   return smoothstep(soft, soft.negate(), distance.sub(width / 2))
 }
 
-/** Luminance of a lit window, a lane under its lamps, and a wall beside them [cd/m²]. */
-const LIT = { window: 8, lane: 1.2, wall: 0.8 }
+/** Luminance of the brightest window, a lane under its lamps, and a wall beside them, and lamplight on leaves over their colour [cd/m²]. */
+const LIT = { window: 6, lane: 1.2, wall: 0.8, leaves: 5 }
 /** Height in which a wall's light from the street falls to a third [m]. */
 const LAMPLIGHT = 9
 
@@ -68,7 +69,10 @@ function facadeMaterial(scale: Node<'float'>): MeshStandardNodeMaterial {
   material.roughnessNode = mix(0.85, 0.12, window)
   const room = fract(sin(floor(cell).dot(vec2(12.9898, 78.233))).mul(43758.5453))
   const isLit = mix(step(0.66, room), float(0.33), blur)
-  const rooms = color('#ffcf95').mul(window.mul(isLit).mul(LIT.window))
+  // Curtains and lamps differ from room to room.
+  const brightness = mix(fract(room.mul(37.7)).mul(0.85).add(0.15), float(0.6), blur)
+  const light = mix(color('#ffb56b'), color('#ffe3c4'), fract(room.mul(91.3)))
+  const rooms = light.mul(window.mul(isLit).mul(brightness).mul(LIT.window))
   const fromBelow = uv().y.div(-LAMPLIGHT).exp().mul(isWall).mul(LIT.wall)
   const walls = vertexColor().rgb.mul(color('#ffc687')).mul(window.oneMinus()).mul(fromBelow)
   material.emissiveNode = rooms.add(walls).mul(scale)
@@ -108,8 +112,22 @@ function streetMaterial(noise: DataTexture, scale: Node<'float'>): MeshStandardN
     sin(x.mul((2 * Math.PI) / 26))
       .mul(0.5)
       .add(0.5)
+      .pow(2)
   const lamps = mix(pool(x), pool(z), crossing.oneMinus()).mul(0.8).add(0.2)
   material.emissiveNode = color('#ffc687').mul(street.mul(lamps).mul(LIT.lane)).mul(scale)
+  return material
+}
+
+/** Leaves, lit by the lamps below them. */
+function leafMaterial(noise: DataTexture, scale: Node<'float'>): MeshStandardNodeMaterial {
+  const green = color('#3f5a2c')
+  const material = new MeshStandardNodeMaterial({ roughness: 0.9 })
+  const { x, y, z } = positionLocal
+  const clumps = texture(noise, vec2(x.add(y), z.sub(y)).div(3)).r
+  material.colorNode = green.mul(clumps.add(0.5))
+  const below = y.div(-LAMPLIGHT).exp().mul(normalLocal.y.mul(-0.4).add(0.6))
+  const lamplight = below.mul(clumps.mul(clumps)).mul(4 * LIT.leaves)
+  material.emissiveNode = color('#3f4411').mul(lamplight).mul(scale) // of green leaves
   return material
 }
 
@@ -185,7 +203,7 @@ export function createCity(noise: DataTexture): City {
   )
   ground.receiveShadow = true
 
-  const leaves = new MeshStandardNodeMaterial({ color: '#3f5a2c', roughness: 0.9 })
+  const leaves = leafMaterial(noise, scale)
   const bark = new MeshStandardNodeMaterial({ color: '#4a3b2e', roughness: 0.95 })
   const crowns = plant(crownGeometry(), leaves, trees, 5)
   const trunks = plant(new CylinderGeometry(0.13, 0.18, 4, 6), bark, trees, 2)

@@ -1,7 +1,8 @@
-import { TextureLoader } from 'three'
-import type { DataTexture, Texture } from 'three'
-import { attribute, float, max, smoothstep, texture, uniform, vec3 } from 'three/tsl'
+import { ImageLoader, MathUtils, RedFormat } from 'three'
+import type { DataTexture } from 'three'
+import { attribute, float, texture, uniform, vec3 } from 'three/tsl'
 import type { Node, UniformNode } from 'three/webgpu'
+import { mipmapped } from '../mipmapped'
 
 /** Luminance of the brightest cities as a whole, seen from above [cd/m²]. */
 const BRIGHTEST = 2
@@ -15,6 +16,38 @@ export interface CityLights {
 }
 
 /**
+ * Share of towns in each texel of a picture of the Earth by night. It is found before the picture is made smaller: from
+ * afar towns are small beside land and sea, which are blue in it.
+ */
+function townsOf(picture: HTMLImageElement): DataTexture {
+  const { width, height } = picture
+  const canvas = document.createElement('canvas')
+  canvas.width = width
+  canvas.height = height
+  const context = canvas.getContext('2d', { willReadFrequently: true })
+  if (context === null) throw new Error('createCityLights: there is no 2D canvas')
+  // Rows of a texture go up.
+  context.scale(1, -1)
+  context.drawImage(picture, 0, -height)
+  const { data } = context.getImageData(0, 0, width, height)
+  return mipmapped(townShares(data), width, height, RedFormat)
+}
+
+/**
+ * Shares of towns of pixels, in bytes.
+ *
+ * @param pixels - RGBA.
+ */
+export function townShares(pixels: ArrayLike<number>): Uint8Array {
+  const shares = new Uint8Array(pixels.length / 4)
+  for (let i = 0; i < shares.length; i++) {
+    const yellow = (pixels[4 * i] - 0.6 * pixels[4 * i + 2]) / 255
+    shares[i] = Math.round(255 * MathUtils.smoothstep(yellow, 0.08, 0.9))
+  }
+  return shares
+}
+
+/**
  * Lights of the world's towns: a picture of it says how many there are, noise where they stand in each of its texels,
  * down to a lane.
  *
@@ -23,12 +56,10 @@ export interface CityLights {
  * @param url - Directory of the picture.
  */
 export async function createCityLights(url: string, noise: DataTexture): Promise<CityLights> {
-  const picture: Texture = await new TextureLoader().loadAsync(`${url}earth-night.jpg`)
+  const picture = townsOf(await new ImageLoader().loadAsync(`${url}earth-night.jpg`))
   picture.anisotropy = 8
   const scale = uniform(1e-4)
-  const seen = texture(picture, attribute<'vec2'>('globe', 'vec2'))
-  // The picture's seas and deserts are blue.
-  const towns = smoothstep(0.08, 0.9, max(seen.r.sub(seen.b.mul(0.6)), 0))
+  const towns = texture(picture, attribute<'vec2'>('globe', 'vec2')).r
   const detail = attribute<'vec2'>('detail', 'vec2')
   // Mipmaps level out to a half what is too fine to see: then the factor is 1.
   const clumps = (periods: number, contrast: number): Node<'float'> =>

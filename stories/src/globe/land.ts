@@ -1,4 +1,5 @@
 import { GlobeControls } from '3d-tiles-renderer'
+import type { AutoExposureNode } from '@welkin/atmosphere'
 import { Ellipsoid, fitGlobeCamera } from '@welkin/geo'
 import { Group, PerspectiveCamera, Scene, Vector3 } from 'three'
 import type { DataTexture } from 'three'
@@ -40,6 +41,8 @@ export interface LandStory<Args> {
   place(args: Args): Place
   /** Frames to draw before one counts; {@link WARM_UP_FRAMES} if left out. */
   readonly warmUpFrames?: number
+  /** Exposure of the picture, which adapts to it; left out, there is none. */
+  readonly exposure?: AutoExposureNode
   /** Called before the frames of a screenshot: settles when all that these need is there. */
   prepare?(): Promise<void>
   /** Follows its arguments. */
@@ -140,7 +143,8 @@ export async function createLand<Args extends RendererArgs>(
         draw()
         // Passes draw their scene once in an animation frame.
         const isLast = i >= warmUpFrames - WARM_UP_FRAMES
-        if (isLast) await new Promise(requestAnimationFrame)
+        if (isLast || story.exposure) await new Promise(requestAnimationFrame)
+        await story.exposure?.settle()
       }
       if (!isOver()) isLoaded = true
       // Whoever awaits a load that another has cut short awaits that one.
@@ -177,8 +181,10 @@ export async function createLand<Args extends RendererArgs>(
       return tilesProgress(tilesets)
     },
     render() {
+      const seconds = elapsed()
       if (explorer !== undefined) {
-        explorer.update(elapsed())
+        story.exposure?.adapt(seconds)
+        explorer.update(seconds)
         controls.enabled &&= isLoaded && !explorer.isWalking && !explorer.isFlying
         controls.update()
       }

@@ -46,10 +46,26 @@ export const PLACES = {
     heading: 325,
     pitch: -20
   },
+  eastCoast: {
+    label: 'America, 400 km',
+    longitude: -70,
+    latitude: 26.5,
+    height: 400_000,
+    heading: 333,
+    pitch: -22
+  },
   globe: {
     label: 'Asia, 20,000 km',
     longitude: 125,
     latitude: 20,
+    height: 20_000_000,
+    heading: 0,
+    pitch: -90
+  },
+  europe: {
+    label: 'Europe and Africa, 20,000 km',
+    longitude: 15,
+    latitude: 26,
     height: 20_000_000,
     heading: 0,
     pitch: -90

@@ -233,6 +233,7 @@ export class Valley {
     this.#village.object.visible = village
     this.#water.mesh.visible = water
     this.#mirror.isOn = reflections
+    this.#falling.wets = this.#state.wetGround
     const keys = ['trees', 'village', 'water', 'quality'] as const
     if (keys.some(key => this.#state[key] !== before[key])) this.#redrawShadows()
     this.#applyWeather(atOnce)
@@ -292,11 +293,13 @@ export class Valley {
     }
     const [from, to] = LAMPS
     const elevation = MathUtils.radToDeg(Math.asin(sunDirection.y))
-    const share = MathUtils.clamp((from - elevation) / (from - to), 0, 1)
+    const { lamps, moonlight } = this.#state
+    const dusk = MathUtils.clamp((from - elevation) / (from - to), 0, 1)
+    const share = lamps ? dusk : 0
     const night = MathUtils.smoothstep(-elevation, 0, -NIGHT)
     this.exposure.compensation = MathUtils.lerp(this.weather.exposure, NIGHT_COMPENSATION, night)
     const isNight = elevation < NIGHT_LIGHTS
-    const isMoonlit = this.#moonShadow.update(this.camera, isNight)
+    const isMoonlit = this.#moonShadow.update(this.camera, isNight && moonlight)
     for (const light of this.#moonlights) setLit(light, isMoonlit)
     setLit(this.#daySky, elevation > TWILIGHT)
     setLit(this.#nightSky, isNight)

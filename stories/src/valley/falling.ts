@@ -25,6 +25,8 @@ export class ValleyPrecipitation {
   readonly shafts = precipitationShafts({ drops: this.drops }) // to `clouds`
   readonly water = new SurfaceWater() // to what gets wet
   #falling: readonly Precipitation[] = []
+  #wets = true
+  #weather: Pick<Weather, 'rain' | 'snow'> = { rain: 0, snow: 0 }
 
   /** Draws what falls around the camera over a picture with its air and clouds. */
   over(
@@ -42,6 +44,17 @@ export class ValleyPrecipitation {
     return precipitationOverlay(picture, camera, this.#falling)
   }
 
+  /** True if the ground gets wet and white; set, it is at once as if weather had been as it is for long. */
+  get wets(): boolean {
+    return this.#wets
+  }
+
+  set wets(value: boolean) {
+    if (value === this.#wets) return
+    this.#wets = value
+    this.#cover()
+  }
+
   /** Takes what falls; at once, as if it had fallen for long. */
   set({ rain, snow }: Weather, atOnce: boolean): void {
     for (const [i, rate] of [rain, snow].entries()) {
@@ -49,13 +62,20 @@ export class ValleyPrecipitation {
       const falls = rate < 0.05 ? 0 : rate
       if (this.#falling[i].rate !== falls) this.#falling[i].rate = falls
     }
-    if (!atOnce) return
-    this.water.water = rain > 0 ? FALLEN.rain : 0
-    this.water.snow = snow > 0 ? FALLEN.snow : 0
+    this.#weather = { rain, snow }
+    if (atOnce) this.#cover()
+  }
+
+  /** Covers the ground with what has fallen for long. */
+  #cover(): void {
+    const { rain, snow } = this.#weather
+    this.water.water = this.#wets && rain > 0 ? FALLEN.rain : 0
+    this.water.snow = this.#wets && snow > 0 ? FALLEN.snow : 0
   }
 
   /** Wets, whitens and dries the ground. */
   update(seconds: number, { rain, snow }: Weather): void {
+    if (!this.#wets) return
     const isCold = snow > 0
     const temperature = isCold ? -1 : 14
     const irradiance = rain + snow > 0 ? 60 : 400

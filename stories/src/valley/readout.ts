@@ -4,10 +4,17 @@ import type { WebGPURenderer } from 'three/webgpu'
 import { overlayOn } from '../overlay'
 import { clockOf } from './clock'
 import { PassTimes, type PassTime } from './PassTimes'
-import { gpuText, type LastPass } from './shares'
+import { FeatureMeter } from './FeatureMeter'
+import { meteredFeatures } from './meteredFeatures'
+import { featureText, gpuText, type LastPass } from './shares'
+import type { ValleyState } from './Valley'
 
 /** Time between two readings [ms]. */
 const PERIOD = 500
+
+/** Labels of the button. */
+const MEASURE = 'Measure each feature'
+const STOP = 'Stop'
 
 const DATE = new Intl.DateTimeFormat('en-GB', { day: 'numeric', month: 'long', timeZone: 'UTC' })
 
@@ -27,14 +34,32 @@ export class Readout {
   #readings = 0
   #hadTimes = false
   #gpu = ''
+  readonly #text = document.createElement('div')
+  readonly #button = document.createElement('button')
+  readonly #meter: FeatureMeter<Partial<ValleyState>>
+  #lastFrame = performance.now()
 
-  constructor(canvas: HTMLCanvasElement, renderer: WebGPURenderer) {
+  /** @param set - Follows changes of the valley's state; undefined has it as its controls say. */
+  constructor(
+    canvas: HTMLCanvasElement,
+    renderer: WebGPURenderer,
+    state: () => ValleyState,
+    set: (changes: Partial<ValleyState> | undefined) => void
+  ) {
     this.#renderer = renderer
+    this.#meter = new FeatureMeter(set)
     renderer.inspector = this.#times
     this.#element = overlayOn(canvas)
     // It changes twice a second: nothing to be read out.
     this.#element.role = 'none'
     Object.assign(this.#element.style, { textAlign: 'right', fontVariantNumeric: 'tabular-nums' })
+    Object.assign(this.#button.style, { pointerEvents: 'auto', font: 'inherit' })
+    this.#button.textContent = MEASURE
+    this.#button.addEventListener('click', () => {
+      if (this.#meter.isMeasuring) this.#meter.stop()
+      else this.#meter.start(meteredFeatures(state()))
+    })
+    this.#element.append(this.#text, this.#button)
   }
 
   /**
@@ -54,6 +79,9 @@ export class Readout {
   ): void {
     this.#frames++
     this.#cpu += milliseconds
+    const drawn = performance.now()
+    this.#meter.update((drawn - this.#lastFrame) / 1000)
+    this.#lastFrame = drawn
     if (!this.#isReading) void this.#read()
     const now = performance.now()
     const elapsed = now - this.#since
@@ -67,10 +95,15 @@ export class Readout {
       this.#gpu = gpuText(this.#passes, this.#timedFrames, this.#readings, effects)
     }
     this.#hadTimes ||= hasTimes
-    this.#element.textContent =
+    const { isMeasuring, current: feature, shares } = this.#meter
+    // Without times there is nothing to measure.
+    this.#button.hidden = !this.#hadTimes
+    this.#button.textContent = isMeasuring ? `${STOP}: ${feature}` : MEASURE
+    this.#text.textContent =
       `${clock} · east ${x.toFixed(0)} m, north ${(-z).toFixed(0)} m · ` +
       `${(y - ground).toFixed(1)} m above ground\n` +
-      `${((1000 * this.#frames) / elapsed).toFixed(0)} frames/s · CPU ${cpu} ms${this.#gpu}`
+      `${((1000 * this.#frames) / elapsed).toFixed(0)} frames/s · CPU ${cpu} ms${this.#gpu}` +
+      featureText(shares)
     this.#frames = this.#cpu = this.#timedFrames = 0
     this.#passes = []
     this.#since = now
@@ -84,8 +117,15 @@ export class Readout {
       .catch(() => ({ passes: [], frames: 0 }))
     this.#passes.push(...passes)
     this.#timedFrames += frames
+    const spent = passes.reduce((sum, [, milliseconds]) => sum + milliseconds, 0)
+    this.#meter.take(spent, frames)
     this.#readings++
     this.#isReading = false
+  }
+
+  /** Ends a measurement: the state is another now. */
+  reset(): void {
+    this.#meter.stop()
   }
 
   dispose(): void {

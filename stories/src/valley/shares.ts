@@ -1,3 +1,4 @@
+import type { FeatureShare } from './FeatureMeter'
 import type { ValleyEffects } from './finish'
 import type { PassTime } from './PassTimes'
 
@@ -91,4 +92,13 @@ export function gpuText(
     .map(([name, milliseconds]) => `${name} ${(milliseconds / frames).toFixed(2)}`)
     .join('\n')
   return ` · GPU ${total.toFixed(1)} ms\n${shares}`
+}
+
+/** Lines about what each feature takes, as measured without it, the longest first; nothing while none is measured. */
+export function featureText(shares: readonly FeatureShare[]): string {
+  if (shares.length === 0) return ''
+  const lines = [...shares]
+    .sort((a, b) => b.milliseconds - a.milliseconds)
+    .map(({ name, milliseconds }) => `${name} ${milliseconds.toFixed(2)}`)
+  return `\n\nless without:\n${lines.join('\n')}`
 }
