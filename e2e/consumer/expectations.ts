@@ -96,8 +96,7 @@ const fibersClock = /THREE\.Clock: This module has been deprecated/
 export const expectations: Record<string, Expectation> = {
   clouds: { wrongWith: checkClouds, backends: ['webgpu'] },
   terrain: { wrongWith: checkTerrain, backends: ['webgpu'] },
-  // The quick start is drawn as webpack bundles it, without WebGPU, and its parts under React; Vite's page of it, the very same code, is only built.
-  fiber: { wrongWith: checkQuickStart, backends: ['webgpu'], allows: fibersClock },
+  // The quick start is drawn as webpack bundles it, without WebGPU; Vite's page of it, the very same code, and that of its parts under React are only built.
   fiberClouds: { wrongWith: checkClouds, backends: ['webgpu'], allows: fibersClock },
   webpack: { wrongWith: checkQuickStart, backends: ['webgl'] },
   geo: {

@@ -43,8 +43,8 @@ const usage = `npm run validate -- [options]
                              e2e/reference/shafts.json; --quality NAME of the shafts, by default high,
                              or several (medium,high), each in turn,
                              --reversed for a reversed depth buffer, --forward for materials that draw
-                             the air themselves, --all for post effect and materials on both backends,
-                             and of qualities but the first for WebGPU's post effect alone,
+                             the air themselves, --all for post effect and materials on WebGPU and the post
+                             effect on WebGL, and of qualities but the first for WebGPU's post effect alone,
                              --every N for every Nth camera of the file alone
   --export-clouds OUT        instead: writes clouds as OUT.raw (float32 extinction [1/m], z, y, x) and
                              OUT.json; with --preset NAME, --size 6000 and --cell 20 [m], --longitude and
@@ -189,14 +189,20 @@ async function main(): Promise<void> {
     const isReversed = values.reversed
     // More samples are the same code on either backend, and in materials.
     const [usual, ...others] = qualities
-    const usualWays = (values.all ? backends : [where.backend]).flatMap(backend =>
-      (values.all ? [false, true] : [values.forward]).map(isForward => ({
-        backend,
-        isForward,
-        isReversed,
-        quality: usual
-      }))
-    )
+    // On WebGL materials draw what the post effect does: see the GPU tests.
+    const chosen = values.all
+      ? ([
+          ['webgpu', false],
+          ['webgpu', true],
+          ['webgl', false]
+        ] as const)
+      : ([[where.backend, values.forward]] as const)
+    const usualWays = chosen.map(([backend, isForward]) => ({
+      backend,
+      isForward,
+      isReversed,
+      quality: usual
+    }))
     const ways = usualWays.concat(
       others.map(quality => Object.assign({}, usualWays[0], { quality }))
     )

@@ -28,13 +28,14 @@ const longest = [
   'valley-',
   'rain-bow',
   'stormnight-',
-  'clouds-',
-  'lightshafts-',
   'realornot-',
-  'halos-',
   'realheights-',
-  'terrain-range',
-  'day-'
+  'mountainshadows-',
+  'lightshafts-',
+  'flatworld-',
+  'halos-',
+  'clouds-',
+  'planets-'
 ]
 
 const { values, positionals } = parseArgs({

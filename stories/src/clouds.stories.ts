@@ -142,8 +142,7 @@ export const Cumulus: Story = {
 /** Stratocumulus below the windows of an aircraft. */
 export const Cockpit: Story = {
   name: 'Cockpit above a deck',
-  args: { ...sky('stratocumulus'), altitude: 2600, heading: 250, pitch: -5, props: 'cockpit' },
-  tags: ['screenshot', 'webgpu-only']
+  args: { ...sky('stratocumulus'), altitude: 2600, heading: 250, pitch: -5, props: 'cockpit' }
 }
 
 /** Storms up to 11 km high in the sun of the afternoon: flat bases, towers, an anvil. */
@@ -156,8 +155,7 @@ export const Storm: Story = {
     heading: 20,
     pitch: 14,
     hour: 6.5
-  },
-  tags: ['screenshot', 'webgpu-only']
+  }
 }
 
 /** Towering cumulus of an afternoon, heads upon heads. */
@@ -268,8 +266,7 @@ export const InsideACloud: Story = {
     heading: 140,
     pitch: 2,
     props: 'balloons'
-  },
-  tags: ['screenshot', 'webgpu-only']
+  }
 }
 
 /** Shadows drift over real heights. */

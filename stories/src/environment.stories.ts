@@ -53,7 +53,7 @@ export const Day: Story = {}
 /** The sun stands low ahead: its glow in the sky, in the water and in the metals. */
 export const Sunset: Story = {
   args: { elevation: 3, azimuth: 25, ripples: 2, exposure: 1.5 },
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** Still water: at the horizon sea and sky are of one colour. */

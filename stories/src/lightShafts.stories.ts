@@ -57,7 +57,7 @@ export default meta
 type Story = StoryObj<LightShaftsArgs>
 
 /** Jacob's ladder: rays that fan out from the gaps of a deck. */
-export const Deck: Story = { name: 'Below a broken deck', tags: ['screenshot', 'webgpu-only'] }
+export const Deck: Story = { name: 'Below a broken deck' }
 
 /** Rays between the shadows of spruces on a ridge, in the fog of the valley before it, the sun 9° up. */
 export const Ridge: Story = {
@@ -69,7 +69,7 @@ export const Ridge: Story = {
 export const Towers: Story = {
   name: 'Towers in haze',
   args: argsOf('towers'),
-  tags: ['screenshot']
+  tags: ['screenshot', 'webgpu-only']
 }
 
 /** A storm's shadow on its anvil and on the haze below, from 9 km. */

@@ -59,7 +59,7 @@ export const Shower: Story = {}
 /** The sun behind one's back: both bows where a shaft is sunlit, dark between them, and none beside it. */
 export const Bow: Story = {
   name: 'Bow in a shower',
-  tags: ['screenshot'],
+  tags: ['screenshot', 'webgpu-only'],
   args: { view: 'bow', ...VIEWS.bow.args }
 }
 

@@ -57,7 +57,7 @@ export default meta
 type Story = StoryObj<ShellArgs>
 
 /** Three bodies with air and one without. */
-export const Map: Story = { tags: ['screenshot', 'webgpu-only'] }
+export const Map: Story = {}
 
 /** Inside the air: the cockpit is clear, the ground is in haze. */
 export const Cockpit: Story = {

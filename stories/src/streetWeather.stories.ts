@@ -52,7 +52,7 @@ export default meta
 type Story = StoryObj<StreetArgs>
 
 /** Snow at night, in the light of four lamps. */
-export const Snowfall: Story = { tags: ['screenshot'] }
+export const Snowfall: Story = { tags: ['screenshot', 'webgpu-only'] }
 
 /** A shower by day: streaks against the walls, puddles with rings. */
 export const Rain: Story = {

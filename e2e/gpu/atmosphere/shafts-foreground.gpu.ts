@@ -116,7 +116,8 @@ gpuTest(
       t.note(`${fast[i]}: ${(100 * most).toFixed(2)} % off at most, at ${errors.indexOf(most) + 2}`)
       expectTrue(most <= MOST, `${fast[i]}: light before clouds is ${most} off`)
     })
-  }
+  },
+  { backends: ['webgpu'] }
 )
 
 /** Light that single pixels lose more than they should, at most, as part of what they should. */

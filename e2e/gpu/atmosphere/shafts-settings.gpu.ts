@@ -34,42 +34,48 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
-gpuTest('frees its textures', async t => {
-  const renderer = await t.createRenderer(size)
-  const { scene, camera, atmosphere, draw, shafts, dispose } = stage(renderer, 15)
-  addBox(scene, [0, 200, -600], [200, 500, 40])
-  shafts.enabled = false
-  await draw()
-  const objects = countObjects(renderer)
-  shafts.enabled = true
-  const first = await draw()
-  expectTrue((objects.Texture ?? 0) > 0, 'shafts have textures')
-  const held = objects.Texture
-  shafts.dispose()
-  expectTrue(objects.Texture < held, `${held} textures, ${objects.Texture} after dispose`)
-  expectSame(await draw(), first, 'used again')
+gpuTest(
+  'frees its textures',
+  async t => {
+    const renderer = await t.createRenderer(size)
+    const { scene, camera, atmosphere, draw, shafts, dispose } = stage(renderer, 15)
+    addBox(scene, [0, 200, -600], [200, 500, 40])
+    shafts.enabled = false
+    await draw()
+    const objects = countObjects(renderer)
+    shafts.enabled = true
+    const first = await draw()
+    expectTrue((objects.Texture ?? 0) > 0, 'shafts have textures')
+    const held = objects.Texture
+    shafts.dispose()
+    expectTrue(objects.Texture < held, `${held} textures, ${objects.Texture} after dispose`)
+    expectSame(await draw(), first, 'used again')
 
-  // The volume of materials is there while they read it.
-  const sizeOf = (): number => renderer.info.memory.texturesSize
-  shafts.quality = 'medium'
-  await draw()
-  const least = sizeOf()
-  atmosphere.add(shafts)
-  const sizeWith = async (options: LightShaftsOptions): Promise<number> => {
-    shafts.set(options)
-    await nextFrame()
-    await drawForward(renderer, scene, camera, atmosphere)
-    return sizeOf()
-  }
-  const most = await sizeWith({})
-  const off = await sizeWith({ enabled: false })
-  const again = await sizeWith({ enabled: true })
-  atmosphere.remove(shafts)
-  await draw()
-  const after = sizeOf()
-  t.note(`${least} B of textures, ${most} with a volume, ${off} while it is off, ${after} after it`)
-  expectTrue(most > least + 1e6, 'the volume takes memory')
-  expectTrue(off === most && again === most, 'as much while they are off')
-  expectTrue(after <= least, 'all of it is freed')
-  dispose()
-})
+    // The volume of materials is there while they read it.
+    const sizeOf = (): number => renderer.info.memory.texturesSize
+    shafts.quality = 'medium'
+    await draw()
+    const least = sizeOf()
+    atmosphere.add(shafts)
+    const sizeWith = async (options: LightShaftsOptions): Promise<number> => {
+      shafts.set(options)
+      await nextFrame()
+      await drawForward(renderer, scene, camera, atmosphere)
+      return sizeOf()
+    }
+    const most = await sizeWith({})
+    const off = await sizeWith({ enabled: false })
+    const again = await sizeWith({ enabled: true })
+    atmosphere.remove(shafts)
+    await draw()
+    const after = sizeOf()
+    t.note(
+      `${least} B of textures, ${most} with a volume, ${off} while it is off, ${after} after it`
+    )
+    expectTrue(most > least + 1e6, 'the volume takes memory')
+    expectTrue(off === most && again === most, 'as much while they are off')
+    expectTrue(after <= least, 'all of it is freed')
+    dispose()
+  },
+  { backends: ['webgpu'] }
+)

@@ -108,7 +108,6 @@ gpuTest(
     const misses: string[] = []
     for (const [name, coverage] of [
       ['fairWeather', 0.3],
-      ['stratocumulus', 0.8],
       ['cumulonimbus', 0.3]
     ] as const) {
       layers.at(0).set({ ...cloudPreset(name).at(0).parameters, coverage })

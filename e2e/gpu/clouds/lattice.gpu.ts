@@ -99,7 +99,7 @@ gpuTest(
         camera.rotation.x = pitch * degrees
         camera.updateProjectionMatrix()
         camera.updateMatrixWorld()
-        for (let i = 0; i < 4; i++) {
+        for (let i = 0; i < 2; i++) {
           await nextFrame()
           pipeline.render()
         }

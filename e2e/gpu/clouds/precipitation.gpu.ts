@@ -233,6 +233,5 @@ gpuTest(
     }
     scene.dispose()
     drops.dispose()
-  },
-  { backends: ['webgpu'] }
+  }
 )

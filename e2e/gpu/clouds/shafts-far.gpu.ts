@@ -33,49 +33,53 @@ function block(place: Vec3, low: [number, number, number], high: [number, number
   return within.x.mul(within.y).mul(within.z).mul(0.05)
 }
 
-gpuTest('has a tower of cloud shade the cloud behind it, and not one without a tower', async t => {
-  const renderer = await t.createRenderer(raySize)
-  const sun = 25
-  const set = stage(renderer, sun, null)
-  // Two clouds beside the camera, alike from it, and a tower north of the one in the east, where the sun is.
-  const middle = 2000
-  const { node, draw, dispose } = await unseenClouds(
-    renderer,
-    set,
-    new CloudLayers([{ ...fog, baseAltitude: 400, topAltitude: 2400 }]),
-    new SparseNoise(),
-    ({ offset }) => {
-      const { x, y, z } = offset
-      const corner = middle - 300
-      const both = block(vec3(x, y.abs(), z), [400, corner, -300], [800, corner + 600, 300])
-      return both.add(block(offset, [400, middle - 700, 1400], [2400, middle + 700, 2600]))
-    }
-  )
-  for (let i = 0; i < 2; i++) await draw()
-  const { field, light, shadows } = node
-  const quality = new QualityUniforms()
-  quality.set(coarse)
-  const found = await evaluateOnGpu(
-    renderer,
-    [-1, 1].map(side => [side, 0, 0, 0]),
-    ({ x: side }) => {
-      const { up, lightDirection } = field.view
-      const east = lightDirection.cross(up).normalize().mul(side)
-      const place = up.mul(600).add(east.mul(middle)).toConst() as Vec3
-      const ray = { direction: place.normalize().toConst() as Vec3, end: float(3500) }
-      const context = { field, light: light.nodes, shadows: shadows.nodes, quality }
-      const { radiance, transmittance } = litClouds(context, { ...ray, jitter: float(0.5) })
-      return vec4(radiance.y, transmittance, 0, 0)
-    }
-  )
-  const [lit, litThrough, shaded, shadedThrough] = [0, 1, 4, 5].map(i => found[i])
-  t.note(`behind the tower ${(shaded / lit).toFixed(3)} of the light`)
-  expectTrue(Math.max(litThrough, shadedThrough) < 0.05, 'both clouds are seen')
-  // What is left is light of sky and ground.
-  expectTrue(shaded > 0.05 * lit && shaded < 0.6 * lit, `${shaded} of ${lit}`)
-  dispose()
-  set.dispose()
-})
+gpuTest(
+  'has a tower of cloud shade the cloud behind it, and not one without a tower',
+  async t => {
+    const renderer = await t.createRenderer(raySize)
+    const sun = 25
+    const set = stage(renderer, sun, null)
+    // Two clouds beside the camera, alike from it, and a tower north of the one in the east, where the sun is.
+    const middle = 2000
+    const { node, draw, dispose } = await unseenClouds(
+      renderer,
+      set,
+      new CloudLayers([{ ...fog, baseAltitude: 400, topAltitude: 2400 }]),
+      new SparseNoise(),
+      ({ offset }) => {
+        const { x, y, z } = offset
+        const corner = middle - 300
+        const both = block(vec3(x, y.abs(), z), [400, corner, -300], [800, corner + 600, 300])
+        return both.add(block(offset, [400, middle - 700, 1400], [2400, middle + 700, 2600]))
+      }
+    )
+    for (let i = 0; i < 2; i++) await draw()
+    const { field, light, shadows } = node
+    const quality = new QualityUniforms()
+    quality.set(coarse)
+    const found = await evaluateOnGpu(
+      renderer,
+      [-1, 1].map(side => [side, 0, 0, 0]),
+      ({ x: side }) => {
+        const { up, lightDirection } = field.view
+        const east = lightDirection.cross(up).normalize().mul(side)
+        const place = up.mul(600).add(east.mul(middle)).toConst() as Vec3
+        const ray = { direction: place.normalize().toConst() as Vec3, end: float(3500) }
+        const context = { field, light: light.nodes, shadows: shadows.nodes, quality }
+        const { radiance, transmittance } = litClouds(context, { ...ray, jitter: float(0.5) })
+        return vec4(radiance.y, transmittance, 0, 0)
+      }
+    )
+    const [lit, litThrough, shaded, shadedThrough] = [0, 1, 4, 5].map(i => found[i])
+    t.note(`behind the tower ${(shaded / lit).toFixed(3)} of the light`)
+    expectTrue(Math.max(litThrough, shadedThrough) < 0.05, 'both clouds are seen')
+    // What is left is light of sky and ground.
+    expectTrue(shaded > 0.05 * lit && shaded < 0.6 * lit, `${shaded} of ${lit}`)
+    dispose()
+    set.dispose()
+  },
+  { backends: ['webgpu'] }
+)
 
 /** A storm, whose edges are 40 km long, by the elevation of the sun below 400 km [°], and its middle north and east of there [m]. */
 interface Storm {

@@ -14,7 +14,7 @@ import {
 import { weatherBackground } from '../../../packages/clouds/src/density/tsl/weatherBackground'
 import { WeatherMap } from '../../../packages/clouds/src/density/WeatherMap'
 import { fallColumn } from '../../../packages/clouds/src/precipitation/tsl/fallColumn'
-import { cloudScene, mean, offsets } from '../harness/cloud-scene'
+import { cloudScene, mean, offsets, worldMap } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
@@ -143,7 +143,8 @@ gpuTest(
   async t => {
     const layers = cloudPreset('fairWeather')
     layers.at(0).wind = { east: 10, north: 0 }
-    const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45, height: 2 })
+    const cover = worldMap()
+    const scene = await cloudScene(t, layers, { longitude: 20, latitude: 45, height: 2 }, cover)
     const { field, viewpoint, renderer } = scene
     const map = new WeatherMap(field)
     let draws = 0
@@ -166,6 +167,14 @@ gpuTest(
     layers.at(0).coverage = 0.6
     expectTrue(drawn(0.5) === all, 'another coverage does not')
     expectTrue(drawn(0.5) === 0, 'they are drawn again for nothing')
+    cover.needsUpdate = true
+    expectTrue(drawn(0.5) === all, 'another map of the world does not')
+    field.worldMap!.bounds = { west: -170, south: -90, east: 190, north: 90 }
+    expectTrue(drawn(0.5) === all, 'other bounds of it do not')
+    cover.isRenderTargetTexture = true
+    expectTrue(drawn(0.5) === all && drawn(0.5) === all, 'a map that is drawn into does not')
+    cover.isRenderTargetTexture = false
+    expectTrue(drawn(0.5) === all && drawn(0.5) === 0, 'it is drawn into no more')
     field.atmosphere.place({ longitude: 20, latitude: 45.0001, height: 2 })
     expectTrue(drawn(0.5) === all, 'eleven metres of way do not')
     map.dispose()

@@ -67,50 +67,54 @@ function setSun(atmosphere: Atmosphere, elevation: number): void {
     .addScaledVector(east, Math.cos(elevation))
 }
 
-gpuTest('haze before the ground is the same as fog and as a post effect, within 2 %', async t => {
-  const renderer = await t.createPlanetRenderer(SIZE)
-  const atmosphere = new Atmosphere({ frame: 'ecef' })
-  setSun(atmosphere, 0.5)
-  const heights = new WaveHeights()
-  const terrain = new Terrain(atmosphere, heights, { pageMemory: 20, seaLevel: -Infinity })
-  const sun = new SunDirectionalLight(atmosphere)
-  const scene = new Scene().add(terrain, sun, sun.target, new SkyLightProbe(atmosphere))
-  const camera = cameraAt(atmosphere, heights.highest + 3000, -0.25)
-  terrain.update(renderer, camera, Infinity)
-  scene.backgroundNode = skyBackground(atmosphere)
-  scene.fogNode = aerialPerspectiveFog(atmosphere)
-  const asFog = await t.render(renderer, scene, camera, SIZE)
-  scene.backgroundNode = scene.fogNode = null
-  const clear = await t.render(renderer, scene, camera, SIZE)
-  const scenePass = pass(scene, camera, { samples: 0 })
-  const pipeline = new RenderPipeline(renderer)
-  pipeline.outputNode = aerialPerspective(
-    scenePass.getTextureNode(),
-    scenePass.getTextureNode('depth'),
-    camera,
-    atmosphere
-  )
-  pipeline.outputColorTransform = false
-  const target = new RenderTarget(SIZE.width, SIZE.height, { type: FloatType })
-  renderer.setRenderTarget(target)
-  pipeline.render()
-  renderer.setRenderTarget(null)
-  const asPost = await readPicture(renderer, target)
-  let [worst, haze] = [0, 0]
-  for (let y = SIZE.height / 2; y < SIZE.height; y++) {
-    for (let x = 0; x < SIZE.width; x++) {
-      const [fog, post, bare] = [asFog, asPost, clear].map(picture => luminance(picture, x, y))
-      worst = Math.max(worst, Math.abs(fog - post) / fog)
-      haze = Math.max(haze, Math.abs(fog - bare) / fog)
+gpuTest(
+  'haze before the ground is the same as fog and as a post effect, within 2 %',
+  async t => {
+    const renderer = await t.createPlanetRenderer(SIZE)
+    const atmosphere = new Atmosphere({ frame: 'ecef' })
+    setSun(atmosphere, 0.5)
+    const heights = new WaveHeights()
+    const terrain = new Terrain(atmosphere, heights, { pageMemory: 20, seaLevel: -Infinity })
+    const sun = new SunDirectionalLight(atmosphere)
+    const scene = new Scene().add(terrain, sun, sun.target, new SkyLightProbe(atmosphere))
+    const camera = cameraAt(atmosphere, heights.highest + 3000, -0.25)
+    terrain.update(renderer, camera, Infinity)
+    scene.backgroundNode = skyBackground(atmosphere)
+    scene.fogNode = aerialPerspectiveFog(atmosphere)
+    const asFog = await t.render(renderer, scene, camera, SIZE)
+    scene.backgroundNode = scene.fogNode = null
+    const clear = await t.render(renderer, scene, camera, SIZE)
+    const scenePass = pass(scene, camera, { samples: 0 })
+    const pipeline = new RenderPipeline(renderer)
+    pipeline.outputNode = aerialPerspective(
+      scenePass.getTextureNode(),
+      scenePass.getTextureNode('depth'),
+      camera,
+      atmosphere
+    )
+    pipeline.outputColorTransform = false
+    const target = new RenderTarget(SIZE.width, SIZE.height, { type: FloatType })
+    renderer.setRenderTarget(target)
+    pipeline.render()
+    renderer.setRenderTarget(null)
+    const asPost = await readPicture(renderer, target)
+    let [worst, haze] = [0, 0]
+    for (let y = SIZE.height / 2; y < SIZE.height; y++) {
+      for (let x = 0; x < SIZE.width; x++) {
+        const [fog, post, bare] = [asFog, asPost, clear].map(picture => luminance(picture, x, y))
+        worst = Math.max(worst, Math.abs(fog - post) / fog)
+        haze = Math.max(haze, Math.abs(fog - bare) / fog)
+      }
     }
-  }
-  t.note(`within ${(100 * worst).toFixed(2)} %, of haze up to ${(100 * haze).toFixed(0)} %`)
-  pipeline.dispose()
-  target.dispose()
-  terrain.dispose()
-  if (haze < 0.2) throw new Error('there is no haze')
-  if (worst > 0.02) throw new Error(`fog and post effect differ by ${worst}`)
-})
+    t.note(`within ${(100 * worst).toFixed(2)} %, of haze up to ${(100 * haze).toFixed(0)} %`)
+    pipeline.dispose()
+    target.dispose()
+    terrain.dispose()
+    if (haze < 0.2) throw new Error('there is no haze')
+    if (worst > 0.02) throw new Error(`fog and post effect differ by ${worst}`)
+  },
+  { backends: ['webgpu'] }
+)
 
 gpuTest('the ground receives shadows of things', async t => {
   const renderer = await t.createPlanetRenderer(SIZE)
@@ -216,44 +220,48 @@ gpuTest('a ridge casts its shadow on the ground behind it', async t => {
   if (!(before > 0.95)) throw new Error('the side of the sun is in the shadow')
 })
 
-gpuTest('from orbit the sea is that of planetGround', async t => {
-  const renderer = await t.createPlanetRenderer(SIZE)
-  const atmosphere = new Atmosphere({ frame: 'ecef' })
-  setSun(atmosphere, 0.6)
-  const camera = cameraAt(atmosphere, 4e5, -1.1)
-  const sun = new SunDirectionalLight(atmosphere)
-  const terrain = new Terrain(atmosphere, level(-3000), { pageMemory: 20 })
-  const scene = new Scene().add(terrain, sun, sun.target, new SkyLightProbe(atmosphere))
-  scene.backgroundNode = skyBackground(atmosphere)
-  scene.fogNode = aerialPerspectiveFog(atmosphere)
-  terrain.update(renderer, camera, Infinity)
-  const drawn = await t.render(renderer, scene, camera, SIZE)
-  scene.remove(terrain)
-  terrain.dispose()
-  const [surface, water] = [0, 255].map(value => {
-    const map = new DataTexture(new Uint8Array(4).fill(value), 1, 1)
-    map.wrapS = RepeatWrapping
-    map.needsUpdate = true
-    return map
-  })
-  const other = new Atmosphere({ frame: 'ecef' })
-  setSun(other, 0.6)
-  other.add(planetGround({ surface, water }))
-  scene.backgroundNode = skyBackground(other)
-  scene.fogNode = null
-  const expected = await t.render(renderer, scene, camera, SIZE)
-  let worst = 0
-  let sum = 0
-  for (let y = 0; y < SIZE.height; y++) {
-    for (let x = 0; x < SIZE.width; x++) {
-      const ratio = luminance(drawn, x, y) / luminance(expected, x, y)
-      worst = Math.max(worst, Math.abs(Math.log(ratio)))
-      sum += Math.log(ratio)
+gpuTest(
+  'from orbit the sea is that of planetGround',
+  async t => {
+    const renderer = await t.createPlanetRenderer(SIZE)
+    const atmosphere = new Atmosphere({ frame: 'ecef' })
+    setSun(atmosphere, 0.6)
+    const camera = cameraAt(atmosphere, 4e5, -1.1)
+    const sun = new SunDirectionalLight(atmosphere)
+    const terrain = new Terrain(atmosphere, level(-3000), { pageMemory: 20 })
+    const scene = new Scene().add(terrain, sun, sun.target, new SkyLightProbe(atmosphere))
+    scene.backgroundNode = skyBackground(atmosphere)
+    scene.fogNode = aerialPerspectiveFog(atmosphere)
+    terrain.update(renderer, camera, Infinity)
+    const drawn = await t.render(renderer, scene, camera, SIZE)
+    scene.remove(terrain)
+    terrain.dispose()
+    const [surface, water] = [0, 255].map(value => {
+      const map = new DataTexture(new Uint8Array(4).fill(value), 1, 1)
+      map.wrapS = RepeatWrapping
+      map.needsUpdate = true
+      return map
+    })
+    const other = new Atmosphere({ frame: 'ecef' })
+    setSun(other, 0.6)
+    other.add(planetGround({ surface, water }))
+    scene.backgroundNode = skyBackground(other)
+    scene.fogNode = null
+    const expected = await t.render(renderer, scene, camera, SIZE)
+    let worst = 0
+    let sum = 0
+    for (let y = 0; y < SIZE.height; y++) {
+      for (let x = 0; x < SIZE.width; x++) {
+        const ratio = luminance(drawn, x, y) / luminance(expected, x, y)
+        worst = Math.max(worst, Math.abs(Math.log(ratio)))
+        sum += Math.log(ratio)
+      }
     }
-  }
-  const mean = Math.exp(sum / (SIZE.width * SIZE.height))
-  t.note(`mean ratio ${mean.toFixed(3)}, worst ${Math.exp(worst).toFixed(3)}`)
-  t.note(`${drawn.at(32, 24)}; ${expected.at(32, 24)}`)
-  for (const map of [surface, water]) map.dispose()
-  if (Math.abs(mean - 1) > 0.1 || worst > 0.3) throw new Error('they are two seas')
-})
+    const mean = Math.exp(sum / (SIZE.width * SIZE.height))
+    t.note(`mean ratio ${mean.toFixed(3)}, worst ${Math.exp(worst).toFixed(3)}`)
+    t.note(`${drawn.at(32, 24)}; ${expected.at(32, 24)}`)
+    for (const map of [surface, water]) map.dispose()
+    if (Math.abs(mean - 1) > 0.1 || worst > 0.3) throw new Error('they are two seas')
+  },
+  { backends: ['webgpu'] }
+)

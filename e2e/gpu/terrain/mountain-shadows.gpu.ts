@@ -77,8 +77,7 @@ gpuTest(
     for (const owned of [mountains, terrain, set]) owned.dispose()
     const worst = Math.max(...errors)
     expectTrue(worst < 0.02, `lost light is off by ${worst}`)
-  },
-  { backends: ['webgpu'] }
+  }
 )
 
 gpuTest(
@@ -153,6 +152,6 @@ gpuTest(
     expectTrue(meanOf(bright) > 0.95, 'lit places are lit')
     for (const owned of [node, mountains, terrain, set]) owned.dispose()
   },
-  // The story *Mountain shadows* draws them on WebGL, too.
+  // By the same look-ups as air.
   { backends: ['webgpu'] }
 )

@@ -14,7 +14,7 @@ const DETAIL = 1.2
 const FINEST = 21
 
 /** Cameras, of which so many in a row are about one place, and tiles that each looks for one with an edge in view. */
-const CAMERAS = 10_000
+const CAMERAS = 4000
 const ABOUT = 50
 const TRIES = 12
 

@@ -207,8 +207,11 @@ export class WeatherMap {
     const camera = up.clone().multiplyScalar(radius.value + view.height.value)
     this.#way += camera.distanceTo(this.#camera) + Math.max(...drifts.map(drift => drift.length()))
     this.#camera = camera
-    // A map of the world may change at any time.
-    const others = [worldMap && {}, fadeIn, pixelAngle.value]
+    const map = worldMap?.texture
+    // What is drawn into, or computed, may change at any time.
+    const isDrawn = map && (map.isRenderTargetTexture || 'isStorageTexture' in map)
+    const version = isDrawn ? {} : map?.version
+    const others = [version, worldMap?.bounds, fadeIn, pixelAngle.value]
     const state = [...others, ...Array.from(layers, layer => layer.parameters)]
     if (this.#way < STALE && state.every((value, i) => value === this.#state[i])) return
     this.#way = 0

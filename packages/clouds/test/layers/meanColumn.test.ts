@@ -67,7 +67,7 @@ describe('meanColumn', () => {
   it('lets as much light through as columns of the field do', () => {
     const layer = new CloudLayer({ ...plain, coverage: 0.5, density: 1 })
     // Extinction is in proportion to the density.
-    const means = cloudyColumns(layer.parameters, 6000).map(samples =>
+    const means = cloudyColumns(layer.parameters, 2000).map(samples =>
       samples.reduce((part, sample) => part + sample.extinction / STEPS, 0)
     )
     for (const [density, depthScale] of [
