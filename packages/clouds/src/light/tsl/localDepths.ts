@@ -1,5 +1,6 @@
 import { float, int, mix, smoothstep, vec4 } from 'three/tsl'
 import { select } from '../../select'
+import { hasStorms } from '../../density/kinds'
 import { footprintOf, type CloudSample } from '../../density/tsl/sample'
 import { extinctionsNearby } from '../../density/tsl/sampler'
 import { sampleShadows } from '../../shadow/tsl/sampleShadows'
@@ -53,7 +54,7 @@ const WIDEST = 1.5
  */
 const LIKELY_BELOW = 0.35
 
-/** Probes whose texture reads do not wait for each other, where shaders are compiled for the kinds of their layers. */
+/** Probes whose texture reads do not wait for each other, in skies that are known to have no storms: the code of these is long. 3: slower. */
 const TOGETHER = 2
 
 /** Optical depths around a sample, not delta-scaled. */
@@ -103,7 +104,7 @@ export function localDepths(
   // Decks have no undersides but their own.
   const isIsolated = layered.lessThan(1)
   const probes = count.add(select(isIsolated, int(2), int(1))).toConst() as Int
-  const together = field.kinds === undefined ? 1 : TOGETHER
+  const together = hasStorms(field) === false ? TOGETHER : 1
   const placeOf = (index: Int): { place: CloudSample; add: (extinction: Float) => void } => {
     const isAside = index.greaterThanEqual(count).toConst()
     const isAbove = index.equal(count).toConst()

@@ -33,9 +33,9 @@ const BEFORE = 0.97
 const BEHIND = 1.1
 
 /** Levels to an octave in which distances are kept, log₂ of the distance at the first [m], and the last. */
-const PER_OCTAVE = 4
+const PER_OCTAVE = 8
 const FIRST = 3
-const LAST = 62
+const LAST = 125
 
 /** Level of a ray that is clear to its end, beyond all others. */
 const CLEAR = LAST + 1
@@ -44,7 +44,7 @@ const CLEAR = LAST + 1
 export const FARTHEST_KNOWN = 2 ** (FIRST + LAST / PER_OCTAVE)
 
 /** Steps over 256 are kept in as many parts. */
-const STEPS = 15
+const STEPS = 7
 
 /** Numbers of 11 bits, which half floats hold. */
 const BITS = 2 ** 11

@@ -7,27 +7,17 @@ import { passesDepthTest } from './depthTest'
 import { SAMPLE_STEPS } from './packing'
 import { brightness, CLEAR, type CloudTargets } from './renderTargets'
 import type { Neighbourhood } from './varianceClip'
-
-/**
- * Sharpness s of the kernel e^{−s d²} that interpolates marched pixels, d in marched pixels. Greater: blocks
- * show while one turns; smaller: blur (*Cumulus*).
- */
-const INTERPOLATION_SHARPNESS = 7
-
-/**
- * Sharpness of the kernel by which a marched pixel's weight falls off around it, per pixel squared. Smaller:
- * still clouds blur (*Cumulus*).
- */
-const WEIGHT_SHARPNESS = 5
+import {
+  inMarched,
+  OWN_SAMPLE,
+  weightOf,
+  type CellPosition,
+  type CornerKernel,
+  type WholeCell
+} from './wholeCell'
 
 /** Least weight: that of pixels with no marched one near by. */
 const LEAST_WEIGHT = 1 / SAMPLE_STEPS
-
-/**
- * Weight above which an estimate is a pixel's own sample rather than its neighbours'. Smaller: still clouds
- * blur (*Cumulus*).
- */
-const OWN_SAMPLE = 0.5
 
 /** Greatest deviation of four numbers from their mean, in standard deviations, and the greatest transmittance of corners whose distances are mixed. */
 const MOST_ABOVE = Math.sqrt(3)
@@ -50,21 +40,6 @@ export interface Estimate extends Neighbourhood {
   readonly isOwn: Bool
 }
 
-/** Position of a pixel among marched ones. */
-export interface CellPosition {
-  /** Index of the cell's first corner. */
-  readonly corner: Vec2
-  /** Position from there on, in [0, 1). */
-  readonly part: Vec2
-}
-
-/** The cell that a pixel is in. */
-export function cellPosition({ frame }: FrameInputs, pixel: Vec2): CellPosition {
-  const at = pixel.sub(frame.jitter).div(frame.block).add(1e-3).toConst() as Vec2
-  const corner = at.floor().toConst() as Vec2
-  return { corner, part: at.sub(corner).toConst() }
-}
-
 /** Variables that an estimate is gathered in. */
 interface Gathered {
   light: Vec4
@@ -73,24 +48,6 @@ interface Gathered {
   distance: Float
   /** Square of the distance to the nearest corner that passes [marched pixels²]. */
   nearest: Float
-}
-
-/** Kernel over the corners of a cell, for one pixel in it. */
-interface CornerKernel {
-  /** Weights of the second corner along each axis. */
-  readonly blend: Vec2
-  /** Squares of the distances to the first and to the second corner along each axis [marched pixels²]. */
-  readonly first: Vec2
-  readonly second: Vec2
-}
-
-/** Weights e^{−s p²} and e^{−s (1−p)²} in proportion: as far as a bilinear look-up has to go. */
-function cornerKernel(part: Vec2): CornerKernel {
-  const steepness = part.mul(2).oneMinus().mul(INTERPOLATION_SHARPNESS)
-  const blend = steepness.exp().add(1).reciprocal().toConst() as Vec2
-  const first = part.mul(part).toConst() as Vec2
-  const second = part.oneMinus().mul(part.oneMinus()).toConst() as Vec2
-  return { blend, first, second }
 }
 
 /** Estimate from those corners of a cell that pass the depth test, one by one. */
@@ -144,48 +101,45 @@ function gatherCorners(
  * Estimate of a pixel from the marched pixels around it: from the whole cell, with one bilinear look-up,
  * where the pixel passes its depth test; or else from those corners that it passes alone.
  *
+ * @param whole - `readCell` of its position.
  * @param end - log₂ of the distance at which the pixel ends.
  * @see Kopf et al. 2007, "Joint bilateral upsampling", eq. 3: weights by distance in the image and by depth
  */
 export function estimate(
   viewRays: FrameInputs,
   marched: CloudTargets,
-  { corner, part }: CellPosition,
+  { corner }: CellPosition,
+  whole: WholeCell,
   cell: Cell,
   end: Float
 ): Estimate {
-  const { frame } = viewRays
-  const at = (pixel: Vec2): Vec2 => pixel.add(0.5).div(frame.marchedSize).toConst()
-  const kernel = cornerKernel(part)
-  const closest = kernel.first.min(kernel.second).toConst() as Vec2
   const isWhole = passesCellDepthTest(end, cell.distances).toConst() as Bool
   const gathered: Gathered = {
     light: vec4(0).toVar(),
     mean: vec4(0, 0, 0, 1).toVar(),
     statistics: cell.light.toVar(),
     distance: cell.distances.x.toVar(),
-    nearest: closest.x.add(closest.y).toVar()
+    nearest: whole.closest.toVar()
   }
   const { light, mean, statistics, distance, nearest } = gathered
   If(isWhole, () => {
-    light.assign(marched.light.sample(at(corner.add(kernel.blend))).level(0))
+    light.assign(whole.light)
   }).Else(() => {
-    gatherCorners(gathered, viewRays, marched, corner, kernel, end)
+    gatherCorners(gathered, viewRays, marched, corner, whole.kernel, end)
   })
-  const weight = nearest.mul(frame.block).mul(frame.block).mul(-WEIGHT_SHARPNESS).exp().toConst()
+  const weight = weightOf(viewRays, nearest)
   const isOwn = weight.greaterThan(OWN_SAMPLE).toConst() as Bool
   // At edges of near clouds before far ones the cell's mean is the distance of neither: it is mixed as light is, where all corners see clouds.
   const { y: passed, w: deviation } = cell.light
   const isFilled = deviation.mul(MOST_ABOVE).add(passed).lessThan(MOST_PASSED)
   If(isOwn.or(isFilled).and(isWhole).and(light.w.lessThan(CLEAR)), () => {
-    const place = select(isOwn, kernel.blend.round(), kernel.blend)
-    distance.assign(marched.distances.sample(at(corner.add(place))).level(0).x)
+    distance.assign(whole.distance)
   })
   return {
     light,
     mean: () => {
       If(isWhole, () => {
-        mean.assign(marched.light.sample(at(corner.add(0.5))).level(0))
+        mean.assign(marched.light.sample(inMarched(viewRays, corner.add(0.5))).level(0))
       })
       return mean
     },

@@ -76,7 +76,7 @@ export function reprojectHistory(
     .toConst() as Vec2
   const isInside = from.clamp(vec2(0), frame.size).equal(from).all().and(clipped.z.greaterThan(0))
   const nearest = from.floor().add(0.5).div(frame.size)
-  const apart = unpack(history.distances.sample(nearest).level(0))
+  const packed = history.distances.sample(nearest).level(0).toConst() as Vec4
   const clampedEnd = clampDistance(end).toConst() as Float
   const light = history.light.sample(from.div(frame.size)).level(0).toVar() as Vec4
   If(isStill.or(isSmooth).not(), () => {
@@ -84,6 +84,7 @@ export function reprojectHistory(
     // Transmittance, which overshoots at edges.
     light.w.assign(light.w.min(1))
   })
+  const apart = unpack(packed)
   // Parallax: clouds at the distance of history would have moved by this ratio of the shift more or less.
   const ratio = exp2(distance.sub(apart.x)).sub(1).abs()
   const parallax = ratio.mul(shift).div(MAX_PARALLAX).oneMinus().clamp()

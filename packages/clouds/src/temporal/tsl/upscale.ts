@@ -5,12 +5,13 @@ import type { Bool, Float, Vec2, Vec4 } from '../../tsl-types'
 import { viewRayAt, viewRayEnd, type FrameInputs } from '../../march/tsl/viewRay'
 import { isClear, type Cell } from './cells'
 import { toHalf } from './ditheredHalf'
-import { cellPosition, estimate, type Estimate } from './estimate'
+import { estimate, type Estimate } from './estimate'
 import { interleavedNoise } from './noisePattern'
 import { encodeDistance, FARTHEST, pack, unpack } from './packing'
 import { CLEAR, type CloudTargets } from './renderTargets'
 import { reprojectHistory, type ReprojectedHistory } from './reprojection'
 import { varianceClip } from './varianceClip'
+import { cellPosition, readCell } from './wholeCell'
 
 /**
  * Extra clip tolerance of history, in units of brightness and of transmittance: of stationary pixels and of
@@ -97,9 +98,11 @@ export function upscale(
     const dither = interleavedNoise(pixel, frame.noiseShift).toConst() as Float
     const cellAt = where.corner.add(1.5).div(frame.marchedSize.add(1)).toConst() as Vec2
     const cellLight = cells.light.sample(cellAt).level(0).toConst() as Vec4
+    // Reads that do not wait for each other: so it is with most below.
+    const kept = history.distances.sample(middle).level(0).toConst() as Vec4
     const before = vec4(0).toVar() as Vec4
     If(isClear(cellLight).and(frame.hasHistory.greaterThan(0)), () => {
-      before.assign(unpack(history.distances.sample(middle).level(0)))
+      before.assign(unpack(kept))
     })
     // Clear around and clear before: one more sample of nothing.
     const clearSamples = before.z.sub(frame.block.mul(frame.block).reciprocal())
@@ -111,10 +114,11 @@ export function upscale(
         light: cellLight,
         distances: cells.distances.sample(cellAt).level(0).toConst()
       }
+      const whole = readCell(viewRays, marched, where)
       const ray = viewRayAt(viewRays, middle)
       const missesGround = cell.distances.z.greaterThanEqual(FARTHEST)
       const end = encodeDistance(viewRayEnd(viewRays, middle, ray, missesGround)).toConst() as Float
-      const now = estimate(viewRays, marched, where, cell, end)
+      const now = estimate(viewRays, marched, where, whole, cell, end)
       const result = now.light.toVar() as Vec4
       const samples = now.weight.toVar()
       const distance = now.distance.toVar()
