@@ -118,5 +118,5 @@ export const NightOrbit: Story = {
 /** Towns of Europe and the Nile at midnight; over the Atlantic, clouds in moonlight. */
 export const NightGlobe: Story = {
   name: 'By night: 20,000 km',
-  args: { ...night, place: 'europe', day: Date.UTC(2026, 11, 19), hour: 22.9, exposure: -1 }
+  args: { ...night, place: 'europe', day: Date.UTC(2026, 11, 18), hour: 23.3, exposure: -1.25 }
 }
