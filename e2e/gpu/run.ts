@@ -24,8 +24,10 @@ const { values, positionals } = parseArgs({
 const backends = (values.backend?.split(',') ?? ['webgpu', 'webgl']) as Backend[]
 
 const folder = fileURLToPath(new URL('.', import.meta.url))
-/** Suites that take the longest, which come first. */
+/** Suites that bake what all others take, and those that take the longest, which come first. */
 const longest = [
+  'atmosphere/functions',
+  'clouds/density',
   'everything',
   'clouds/temporal',
   'clouds/random-views',
@@ -38,7 +40,6 @@ const longest = [
   'clouds/cover',
   'atmosphere/exposure',
   'clouds/s',
-  'clouds/density',
   'atmosphere/shafts',
   'atmosphere/planets',
   'clouds/traa'

@@ -20,6 +20,7 @@ import { cloudScene, mean, altitudeIn, offsets, places, worldMap } from '../harn
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectFinite, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
+import { keepTables, reuseTables } from '../harness/reuse-tables'
 
 const twin = new NoiseTextures()
 const names = Object.keys(NOISE_SIZE) as NoiseName[]
@@ -35,6 +36,8 @@ gpuTest(
     // The functions are the same on both backends: on WebGL some slices tell, and one texture that is whole.
     const isWhole = (name: NoiseName): boolean => t.backend === 'webgpu' || name === 'detail'
     if (t.backend === 'webgpu') {
+      // Keeps what it bakes, for later tests, and takes nothing.
+      reuseTables(true, false)
       let frames = 0
       do {
         expectTrue(!field.noise.isReady && frames < 40, `not drawn after ${frames} frames`)
@@ -72,6 +75,7 @@ gpuTest(
         })
       }
     }
+    await keepTables()
     field.dispose()
   },
   { bakes: true }
