@@ -75,7 +75,7 @@ export class LightShafts implements ShadowedShafts {
   /** The camera's view of the air in this light, for post effects. */
   readonly view: ViewNodes
   /** Samples on a view ray. */
-  readonly steps = { groups: number(), samples: number(), inFog: number() }
+  readonly steps = { groups: number(), samples: number(), beyond: number(), inFog: number() }
   protected readonly map = new SunPolarMap()
   protected readonly shadows = new CastShadows()
   readonly shadowedAir: ShadowedAir
@@ -246,7 +246,8 @@ export class LightShafts implements ShadowedShafts {
     this.map.update(renderer, view!, atmosphere.space, maps, quality)
     this.#isActive = maps.length > 0
     if (isLit) this.#updateShadows(view, renderer)
-    for (const name of ['groups', 'samples', 'inFog'] as const) steps[name].value = quality[name]
+    for (const [name, count] of Object.entries(steps))
+      count.value = quality[name as keyof typeof steps]
     return true
   }
 

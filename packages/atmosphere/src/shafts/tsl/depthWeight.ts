@@ -8,7 +8,7 @@ export const SIMILAR = 0.02
 export const ROUGH = 0.1
 
 /** Octaves of depth by which pixels differ at least that much, however alike their light is. Smaller: ground at the horizon has the sky's. */
-const DISTINCT = 0.25
+export const DISTINCT = 0.25
 
 /**
  * Weight of another pixel's samples by how much its air is like this one's: a joint bilateral weight.
