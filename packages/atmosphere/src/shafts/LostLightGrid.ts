@@ -249,7 +249,7 @@ export class LostLightGrid {
       ).toConst() as Vec2
       const start = isOwn.select(size.y, 0).add(size.y).add(2).toConst() as Float
       const similar = this.isBlended ? ROUGH : SIMILAR
-      const { part, least: rare } = lossFit(own, known, similar, index => {
+      const { part, deepest } = lossFit({ depth: own, shown: known }, similar, index => {
         const step = cellOf(index, 2)
         const texel = first.add(step).clamp(vec2(0.5), size.sub(0.5))
         const at = texel.add(vec2(0, start)).mul(this.#texelSize)
@@ -257,7 +257,6 @@ export class LostLightGrid {
         const share = this.isBlended ? shares.x.mul(shares.y) : float(1)
         return { texel: sampleLevel0(this.#texels, at).toConst(), share }
       })
-      const deepest = depthOf(rare)
       const farther = own.sub(deepest).toConst() as Float
       const more = farther.greaterThan(SAME_DEPTH).select(
         farther

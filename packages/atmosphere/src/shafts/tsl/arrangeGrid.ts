@@ -10,8 +10,8 @@ import {
   type Vec3,
   type Vec4
 } from '../../tsl-types'
-import { depthWeight, ROUGH } from './depthWeight'
-import { rarityAt } from './rarity'
+import { depthWeight, ROUGH, type ShownAir } from './depthWeight'
+import { rarityAt, shownOf } from './rarity'
 
 /** Octaves of depth by which pixels may differ and still share light. Smaller: the march's pixels show on slopes (*Towers in haze*). */
 export const SAME_DEPTH = 0.35
@@ -78,7 +78,7 @@ export function arrangeGrid({ lost, parts, size, texelSize, isBlended }: Marched
       return loss
     }
     const loss = lossAt(place)
-    result.assign(isBlended ? vec4(blended(place, loss.w, lossAt), loss.w) : loss)
+    result.assign(isBlended ? vec4(blended(place, airOf(loss.w), lossAt), loss.w) : loss)
   }).Else(() => {
     // Depth, light of the air, light that is lost.
     const least = vec3(APART_DEPTH).toVar()
@@ -109,15 +109,16 @@ export function arrangeGrid({ lost, parts, size, texelSize, isBlended }: Marched
   return result
 }
 
+const airOf = (depth: Float): ShownAir => ({ depth, shown: shownOf(rarityAt(depth)) })
+
 /** Loss of a pixel and of the eight around that are as deep: places of samples count a quarter each. */
-function blended(place: Vec2, own: Float, lossAt: (place: Vec2) => Vec4): Vec3 {
-  const rarity = rarityAt(own)
+function blended(place: Vec2, own: ShownAir, lossAt: (place: Vec2) => Vec4): Vec3 {
   const sums = vec4(0).toVar()
   loop('beside', 9, index => {
     const step = cellOf(index, 3).sub(1).toConst() as Vec2
     const { rgb, w } = lossAt(place.add(step))
     const shares = step.abs().negate().add(2)
-    const near = depthWeight(rarity, own, w, ROUGH)
+    const near = depthWeight(own, airOf(w), ROUGH)
     const weight = near.mul(near).mul(shares.x).mul(shares.y)
     sums.addAssign(vec4(rgb, 1).mul(weight))
   })

@@ -1,7 +1,7 @@
-import { float, vec2, vec3, vec4 } from 'three/tsl'
+import { vec2, vec3, vec4 } from 'three/tsl'
 import { loop, type Float, type Int, type Vec3, type Vec4 } from '../../tsl-types'
-import { DISTINCT } from './depthWeight'
-import { rarityAt, shownOf } from './rarity'
+import { depthWeight, type ShownAir } from './depthWeight'
+import { depthOf, LEAST_RARITY, rarityAt, shownOf } from './rarity'
 
 /** Part of the mean light by which lights must differ for the loss to follow them. Smaller: noise of depths. */
 const LEAST_SPREAD = 0.01
@@ -17,38 +17,29 @@ interface Neighbour {
  * depth count most. So the edge of a cloud, through which a part of the light behind passes, loses that part of what the sky loses and
  * the rest of what the cloud does. Beyond the lights around nothing is known: there it is the part of the nearest.
  *
- * @param own - log₂ depth of the pixel's air.
- * @param known - Part of the light of clear air that it shows, by {@link shownOf}.
+ * @param own - The pixel's air.
  * @param similar - Difference in light at which another counts half [octaves].
- * @returns The part, and 1/τ² of the deepest around.
+ * @returns The part, and the depth of the deepest around.
  */
 export function lossFit(
-  own: Float,
-  known: Float,
+  own: ShownAir,
   similar: number,
   neighbourAt: (corner: Int) => Neighbour
-): { part: Vec3; least: Float } {
+): { part: Vec3; deepest: Float } {
   const lost = vec3(0).toVar()
   const product = vec3(0).toVar()
   // Sums of weights, of lights, and of their squares.
   const sums = vec3(0).toVar()
   const range = vec2(1, 0).toVar()
-  const least = float(1e9).toVar()
-  const octaves = known.reciprocal().mul(Math.LOG2E).toConst() as Float
   loop('corner', 4, corner => {
     const { texel, share } = neighbourAt(corner)
-    const rare = rarityAt(texel.w)
-    const shown = shownOf(rare)
-    // As `depthWeight` has it, but for a logarithm.
-    const light = shown.sub(known).mul(octaves).abs()
-    const apart = texel.w.sub(own).abs().min(DISTINCT).max(light).toConst()
-    const weight = share.div(apart.mul(apart).add(similar ** 2)).toConst() as Float
+    const shown = shownOf(rarityAt(texel.w))
+    const weight = depthWeight(own, { depth: texel.w, shown }, similar).mul(share).toConst()
     const each = texel.rgb.mul(shown.mul(weight)).toConst() as Vec3
     lost.addAssign(each)
     product.addAssign(each.mul(shown))
     sums.addAssign(vec3(1, shown, shown.mul(shown)).mul(weight))
     range.assign(vec2(range.x.min(shown), range.y.max(shown)))
-    least.assign(least.min(rare))
   })
   const inverse = sums.x.reciprocal().toConst() as Float
   const means = vec4(lost, sums.y).mul(inverse).toConst() as Vec4
@@ -59,7 +50,8 @@ export function lossFit(
     .max(0)
     .add(square.mul(LEAST_SPREAD ** 2))
   const slope = product.mul(inverse).sub(means.rgb.mul(means.w)).div(spread)
-  const shown = known.clamp(range.x, range.y).toConst() as Float
+  const shown = own.shown.clamp(range.x, range.y).toConst() as Float
   const part = means.rgb.add(slope.mul(shown.sub(means.w))).div(shown)
-  return { part: part.toConst(), least }
+  const rarity = range.y.mul(range.y).reciprocal().sub(1).max(LEAST_RARITY) as Float
+  return { part: part.toConst(), deepest: depthOf(rarity) }
 }
