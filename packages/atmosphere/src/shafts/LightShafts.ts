@@ -57,7 +57,7 @@ const _axes = new Matrix4()
  * Clouds, hills and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`, or a `heightFieldShadow`. They need no
  * shadow map of the light.
  *
- * Needs a texture of 0.5 MB, and 4 bytes a pixel of the picture (1 at `'low'` and `'medium'` quality).
+ * Needs a texture of 0.5 MB, and 5 bytes a pixel of the picture (1 at `'low'` and `'medium'` quality).
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
  *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",
