@@ -6,6 +6,7 @@ import { RADIANCE_SCALE } from '../tables/tableSizes'
 import { sampleLevel0, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import {
+  APART_LIMIT,
   arrangeGrid,
   cellOf,
   LIT_DEPTH,
@@ -243,9 +244,11 @@ export class LostLightGrid {
       const size = this.#gridSize
       const place = middle.div(this.#texelSize).sub(1).toConst() as Vec2
       const corner = place.floor().toConst() as Vec2
-      // A grid that is not blended mixes places of samples here: as the sampler does where light is steep, else by a quarter each.
+      // A grid that is not blended mixes places of samples here: as the sampler does at one depth, else by a quarter each.
       const first = (
-        this.isBlended ? corner.add(0.5) : isSteep.select(place, corner.add(0.5))
+        this.isBlended
+          ? corner.add(0.5)
+          : mean.w.abs().lessThan(APART_LIMIT).select(place, corner.add(0.5))
       ).toConst() as Vec2
       const start = isOwn.select(size.y, 0).add(size.y).add(2).toConst() as Float
       const similar = this.isBlended ? ROUGH : SIMILAR

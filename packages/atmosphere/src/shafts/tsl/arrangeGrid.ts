@@ -25,10 +25,12 @@ const STEEP_DEPTH = -540
 const APART_DEPTH = 6e4
 
 /**
- * Octaves that no depth is below, but marks of steep light are. A sixty-fourth of a mark is beyond all depths, too: lines a pixel
- * wide were drawn beside marks, where they have little weight (*Sun behind cumulus*, and ridges in the rain of *Valley, all day*).
+ * Octaves that no depth is below, but marks of steep light are; and those that none is beyond but marks as apart, of either sign. A sixty-fourth of a
+ * mark is beyond all depths, and of that for apart beyond this limit: lines a pixel wide were drawn beside marks, where they have little weight
+ * (*Sun behind cumulus*, and ridges in the rain of *Valley, all day*).
  */
 export const STEEP_LIMIT = -30
+export const APART_LIMIT = 600
 
 /** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
 const MIXED_OCTAVES = 0.12
