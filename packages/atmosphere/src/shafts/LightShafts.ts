@@ -57,7 +57,7 @@ const _axes = new Matrix4()
  * Clouds, hills and the like are added: `shafts.add(cloudAirShadow(cloudsNode))`, or a `heightFieldShadow`. They need no
  * shadow map of the light.
  *
- * Needs a texture of 0.5 MB, and 4 bytes a pixel of the picture (1 at `'low'` and `'medium'` quality).
+ * Needs a texture of 0.5 MB, and 5 bytes a pixel of the picture (1 at `'low'` and `'medium'` quality).
  *
  * @see Chen et al. 2011, "Real-time volumetric shadows using 1D min-max mipmaps", fig. 1 (a map in polar
  *   coordinates about the camera); Yusov 2014, "High performance outdoor light scattering using epipolar sampling",
@@ -75,7 +75,7 @@ export class LightShafts implements ShadowedShafts {
   /** The camera's view of the air in this light, for post effects. */
   readonly view: ViewNodes
   /** Samples on a view ray. */
-  readonly steps = { groups: number(), samples: number(), inFog: number() }
+  readonly steps = { groups: number(), samples: number(), beyond: number(), inFog: number() }
   protected readonly map = new SunPolarMap()
   protected readonly shadows = new CastShadows()
   readonly shadowedAir: ShadowedAir
@@ -246,7 +246,8 @@ export class LightShafts implements ShadowedShafts {
     this.map.update(renderer, view!, atmosphere.space, maps, quality)
     this.#isActive = maps.length > 0
     if (isLit) this.#updateShadows(view, renderer)
-    for (const name of ['groups', 'samples', 'inFog'] as const) steps[name].value = quality[name]
+    for (const [name, count] of Object.entries(steps))
+      count.value = quality[name as keyof typeof steps]
     return true
   }
 

@@ -1,51 +1,29 @@
 import type { RenderTarget } from 'three'
-import { Fn, If, float, log2, luminance, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, If, float, log2, luminance, texture, uv, vec2, vec4 } from 'three/tsl'
 import type { Renderer, TextureNode } from 'three/webgpu'
 import { FragmentPass, outputs, tableTarget } from '../tables/FragmentPass'
 import { RADIANCE_SCALE } from '../tables/tableSizes'
-import {
-  loop,
-  sampleLevel0,
-  type Bool,
-  type Float,
-  type Int,
-  type Vec2,
-  type Vec3,
-  type Vec4
-} from '../tsl-types'
+import { sampleLevel0, type Bool, type Float, type Vec2, type Vec3, type Vec4 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
-import { depthWeight, ROUGH, SIMILAR } from './tsl/depthWeight'
+import {
+  APART_LIMIT,
+  arrangeGrid,
+  cellOf,
+  LIT_DEPTH,
+  MAX_KEPT,
+  SAME_DEPTH,
+  STEEP_LIMIT
+} from './tsl/arrangeGrid'
+import { ROUGH, SIMILAR } from './tsl/depthWeight'
+import { lossFit } from './tsl/lossFit'
 import { depthOf, rarityAt, shownOf } from './tsl/rarity'
 import { FAR } from './tsl/without'
-
-/** Octaves of depth by which pixels may differ and still share light. Smaller: the march's pixels show on slopes (*Towers in haze*). */
-const SAME_DEPTH = 0.35
 
 /** Octaves by which a pixel may be farther than those around, and take their light. */
 const NEAR_MEAN = 0.2
 
-/** Part of the light of air that shadows take at most where there are none to speak of. Greater: halos at silhouettes and at edges of clouds. */
-const LEAST_LOST = 5e-4
-
-/** Octaves beyond all depths: those of means where next to nothing is lost, where light is steep, and of pixels whose grounds are at different depths. */
-const LIT_DEPTH = 512
-const STEEP_DEPTH = 540
-const APART_DEPTH = 6e4
-
-/**
- * Octaves that none is beyond but means marked as apart. A sixty-fourth of a mark is beyond all depths, and of that for apart beyond this limit: lines a pixel
- * wide were drawn beside marks, where they have little weight (*Sun behind cumulus*, and ridges in the rain of *Valley, all day*).
- */
-const STEEP_LIMIT = 600
-
 /** Greatest part of a pixel's light that means may take before clouds; for more its own air is looked up. Greater: blue blotches before far clouds in snow (*snowShower* under a low sun). */
 const MOST_OF_SHOWN = 0.9
-
-/** Octaves by which the light of rays around may differ where it is mixed. Greater: dark rings about a hidden sun in fog of droplets. */
-const MIXED_OCTAVES = 0.12
-
-/** Greatest number that the targets keep: half floats hold a little more. */
-const MAX_KEPT = 6e4
 
 /** Scale of light in the targets. */
 const LIGHT_SCALE = RADIANCE_SCALE / 8
@@ -60,9 +38,6 @@ const LEAST_THINNING = 1e-9
 /** Height over which the thinning of the air is found [m]. */
 export const THIN_HEIGHT = 1000
 
-/** Greatest light that is mixed [octaves]. */
-const MAX_MIXED = Math.log2(MAX_KEPT) - 4
-
 /** Least light that other light is compared with [1/sr]. */
 const MIN_LIGHT = 1e-12
 
@@ -75,12 +50,6 @@ const ASIDE = 0.02
 /** Light of which parts are taken, by colours. */
 const partedLight = (light: Vec3): Vec3 =>
   light.max(luminance(light).max(MIN_LIGHT).mul(PALE)).toConst()
-
-/** Column and row in a square of so many, by number. */
-function cellOf(index: Int, columns: number): Vec2 {
-  const row = float(index).div(columns).floor().toConst()
-  return vec2(float(index).sub(row.mul(columns)), row).toConst()
-}
 
 /** Air of a ray, as far as a picture shows it. */
 export interface SeenAir {
@@ -106,14 +75,15 @@ export interface LostLight extends SeenAir {
  * Light that a picture's pixels lose, marched for a grid of them, then taken from those around a pixel that are at its
  * depth: from nine, of which any four that touch have samples in all places of their steps.
  *
- * A first pass marches. A second one puts two things side by side in one texture: means of the four around each corner of the
- * grid, with their depth if they may be mixed, which most pixels read once; and parts of light. Other pixels lose the part of
- * their own light that those around lose of theirs: of nine where light is steep, as about the sun, and of four beside
- * silhouettes. Those that are alike in light and depth count most. One that is farther than all loses light up to their depth:
- * they know nothing of the air beyond. So no pixel loses more than the light of its own air.
+ * A first pass marches. A second one puts three things one below the other in one texture: means of those around each corner of the
+ * grid, with their depth if they may be mixed, which most pixels read once; light that each loses of what it shows; and parts of its own
+ * light. Other pixels take what four around lose of the light that they show, by a fit: see {@link lossFit}. Where light is steep, as about the
+ * sun, and where next to nothing would be left, they look up their own light and lose that part of it. One that is farther
+ * than all loses light up to their depth: they know nothing of the air beyond. So no pixel loses more than the light of its own air.
  *
  * In the shade of clouds next to nothing is left of the light: four would show as squares. So grids for pictures with clouds (`isBlended`) blend
- * parts of light in the second pass, each pixel's with those of the eight around, and weight four by their place too.
+ * each pixel's loss with those of the eight around in the second pass, weight four by their place too, and take means of sixteen: few samples show
+ * as steps opposite the sun, where edges of shadows run along the rays (*Anticrepuscular rays*).
  *
  * A depth is log₂ of the optical path of clear air, which thins out with height, that has as much light as is seen: clouds hide some of it.
  * It is a measure, no more: a pixel finds 1/τ², which needs no root and no quotient.
@@ -159,9 +129,9 @@ export class LostLightGrid {
     this.#density.value = 1 / spacing
     const { x, y } = this.#gridSize.value.copy(this.#size.value).divideScalar(spacing).ceil()
     this.#marched.setSize(x, y)
-    // A column of means more than there are corners, for pixels beyond the last of the grid.
-    this.target.setSize(2 * x + 2, y + 1)
-    const texelSize = this.#texelSize.value.set(1 / (2 * x + 2), 1 / (y + 1))
+    // A row of means more than there are corners, for pixels beyond the last of the grid.
+    this.target.setSize(x + 1, 3 * y + 2)
+    const texelSize = this.#texelSize.value.set(1 / (x + 1), 1 / (3 * y + 2))
     this.#scale.value.copy(this.#size.value).divideScalar(spacing).multiply(texelSize)
     this.#offset.value.setScalar(1 + ASIDE - 0.5 / spacing).multiply(texelSize)
   }
@@ -202,63 +172,22 @@ export class LostLightGrid {
         lostOut.assign(vec4(lost.mul(scale).clamp(-MAX_KEPT, MAX_KEPT), depth))
         partsOut.assign(vec4(lost.div(partedLight(seen)).clamp(-MAX_KEPT, 1), light))
       })
-      this.#passes = [marched, Fn(() => this.#arrange())()].map(
-        output => new FragmentPass('Welkin.LightShafts', output)
-      )
+      this.#passes = [
+        marched,
+        Fn(() =>
+          arrangeGrid({
+            lost: this.#lost,
+            parts: this.#parts,
+            size: this.#gridSize,
+            texelSize: this.#texelSize,
+            isBlended: this.isBlended
+          })
+        )()
+      ].map(output => new FragmentPass('Welkin.LightShafts', output))
       this.#compiled = version
     }
     this.#passes[0].render(renderer, this.#marched)
     this.#passes[1].render(renderer, this.target)
-  }
-
-  /** A texel of the target: the mean of the four pixels about a corner of the grid, or a pixel. */
-  #arrange(): Vec4 {
-    const size = this.#gridSize
-    const texel = uv().div(this.#texelSize).floor().toConst() as unknown as Vec2
-    const result = vec4(0).toVar()
-    const read = (source: TextureNode, place: Vec2): Vec4 =>
-      sampleLevel0(source, place.clamp(vec2(0.5), size.sub(0.5)).div(size)).toConst()
-    If(texel.x.greaterThan(size.x.add(1.5)), () => {
-      const place = texel.sub(vec2(size.x.add(1.5), -0.5)).toConst() as Vec2
-      const own = read(this.#lost, place).w
-      const parts = read(this.#parts, place).rgb.toVar() as Vec3
-      if (this.isBlended) parts.assign(this.#blended(place, own, read))
-      result.assign(vec4(parts, own))
-    }).Else(() => {
-      // Depth, light of the air, light that is lost.
-      const least = vec3(APART_DEPTH).toVar()
-      const most = vec3(-APART_DEPTH).toVar()
-      loop('corner', 4, index => {
-        const at = texel.add(cellOf(index, 2)).sub(0.5).toConst() as Vec2
-        const lost = read(this.#lost, at)
-        result.addAssign(lost.mul(0.25))
-        const each = vec3(lost.w, read(this.#parts, at).w, luminance(lost.rgb)).toConst()
-        least.assign(least.min(each))
-        most.assign(most.max(each))
-      })
-      const apart = most.sub(least).toConst()
-      const isEven = apart.y.lessThan(MIXED_OCTAVES).and(most.y.lessThan(MAX_MIXED))
-      const isLit = most.z.max(least.z.negate()).lessThan(most.y.exp2().mul(LEAST_LOST))
-      const depth = result.w.add(isEven.select(0, STEEP_DEPTH))
-      const marked = apart.x.lessThan(SAME_DEPTH).select(depth, APART_DEPTH)
-      result.w.assign(isLit.select(LIT_DEPTH, marked))
-    })
-    return result
-  }
-
-  /** Parts of a pixel and of the eight around that are as deep: places of samples count a quarter each. */
-  #blended(place: Vec2, own: Float, read: (source: TextureNode, place: Vec2) => Vec4): Vec3 {
-    const rarity = rarityAt(own)
-    const sums = vec4(0).toVar()
-    loop('beside', 9, index => {
-      const step = cellOf(index, 3).sub(1).toConst() as Vec2
-      const at = place.add(step).toConst() as Vec2
-      const shares = step.abs().negate().add(2)
-      const near = depthWeight(rarity, own, read(this.#lost, at).w, ROUGH)
-      const weight = near.mul(near).mul(shares.x).mul(shares.y)
-      sums.addAssign(vec4(read(this.#parts, at).rgb, 1).mul(weight))
-    })
-    return sums.rgb.div(sums.a)
   }
 
   /** 1/τ² of a ray without end; `cosView` is the cosine of its angle from the zenith. */
@@ -289,9 +218,14 @@ export class LostLightGrid {
    * @param at - Its place in the picture.
    * @param seen - Its air.
    * @param lit - Light of its air up to a distance [m]. Called in a branch.
-   * @param shown - Light of all that the pixel shows, of which it loses no greater a part than its air does of its own.
+   * @param shown - Light of all that the pixel shows, over that of the grid times a gain: it loses no greater a part of it than its air does of its own.
    */
-  read(at: Vec2, seen: SeenAir, lit: (distance: Float) => Vec3, shown?: Vec3): Vec3 {
+  read(
+    at: Vec2,
+    seen: SeenAir,
+    lit: (distance: Float) => Vec3,
+    shown?: { readonly light: Vec3; readonly gain: Float }
+  ): Vec3 {
     const { rarity, least, isSeen } = seen
     const middle = at.mul(this.#scale).add(this.#offset).toConst() as Vec2
     // Light that is lost, and depth.
@@ -301,43 +235,45 @@ export class LostLightGrid {
     const lost = mean.rgb.mul(known.div(LIGHT_SCALE)).toVar() as Vec3
     const isOff = (depth: Float | number): Bool => mean.w.sub(depth).abs().greaterThan(NEAR_MEAN)
     const isUnlike = isOff(own).and(isOff(LIT_DEPTH))
-    const excess = shown && lost.sub(shown.mul(MOST_OF_SHOWN)).toConst()
+    const excess = shown && lost.mul(shown.gain).sub(shown.light.mul(MOST_OF_SHOWN)).toConst()
     const isMuch = excess?.x.max(excess.y).max(excess.z).greaterThan(0)
+    const isSteep = mean.w.lessThan(STEEP_LIMIT) as Bool
+    // Its own light says most where light is steep, or next to nothing is left of it.
+    const isOwn = (isMuch && isSeen ? isSteep.or(isSeen.and(isMuch)) : isSteep).toConst() as Bool
     If(isMuch && isSeen ? isUnlike.or(isSeen.and(isMuch)) : isUnlike, () => {
       const size = this.#gridSize
       const place = middle.div(this.#texelSize).sub(1).toConst() as Vec2
       const corner = place.floor().toConst() as Vec2
-      const isSteep = mean.w.lessThan(STEEP_LIMIT)
-      // A grid that is not blended mixes places of samples here: as the sampler does where light is steep, else by a quarter each.
+      // A grid that is not blended mixes places of samples here: as the sampler does at one depth, else by a quarter each.
       const first = (
-        this.isBlended ? corner.add(0.5) : isSteep.select(place, corner.add(0.5))
+        this.isBlended
+          ? corner.add(0.5)
+          : mean.w.abs().lessThan(APART_LIMIT).select(place, corner.add(0.5))
       ).toConst() as Vec2
-      // Light, and depth.
-      const sums = vec4(0).toVar()
-      const weights = float(0).toVar()
-      loop('corner', 4, index => {
+      const start = isOwn.select(size.y, 0).add(size.y).add(2).toConst() as Float
+      const similar = this.isBlended ? ROUGH : SIMILAR
+      const { part, deepest } = lossFit({ depth: own, shown: known }, similar, index => {
         const step = cellOf(index, 2)
         const texel = first.add(step).clamp(vec2(0.5), size.sub(0.5))
-        const at = texel.add(vec2(size.x.add(2), 0)).mul(this.#texelSize)
-        const other = sampleLevel0(this.#texels, at).toConst()
-        const near = depthWeight(rarity, own, other.w, this.isBlended ? ROUGH : SIMILAR)
-        const weight = near.toVar()
-        if (this.isBlended) {
-          const shares = place.sub(corner).sub(step).abs().oneMinus().toConst() as Vec2
-          weight.mulAssign(near.mul(shares.x).mul(shares.y))
-        }
-        sums.addAssign(other.mul(weight))
-        weights.addAssign(weight)
+        const at = texel.add(vec2(0, start)).mul(this.#texelSize)
+        const shares = place.sub(corner).sub(step).abs().oneMinus().toConst() as Vec2
+        const share = this.isBlended ? shares.x.mul(shares.y) : float(1)
+        return { texel: sampleLevel0(this.#texels, at).toConst(), share }
       })
-      sums.divAssign(weights)
-      const farther = sums.w
-        .sub(own)
-        .add(2 * SAME_DEPTH)
-        .toConst()
-      const most = farther.lessThan(SAME_DEPTH).select(sums.w.add(farther.max(0)), LIT_DEPTH)
-      const depth = own.min(most).toConst() as Float
-      lost.assign(partedLight(lit(this.#distanceAt(depth, least))).mul(sums.rgb))
-      if (shown) lost.assign(lost.min(shown.mul(sums.rgb.max(0))))
+      const farther = own.sub(deepest).toConst() as Float
+      const more = farther.greaterThan(SAME_DEPTH).select(
+        farther
+          .sub(2 * SAME_DEPTH)
+          .min(0)
+          .negate(),
+        farther
+      )
+      const depth = deepest.add(more).toConst() as Float
+      lost.assign(part.mul(shownOf(rarityAt(depth)).div(LIGHT_SCALE)))
+      If(isOwn, () => {
+        lost.assign(partedLight(lit(this.#distanceAt(depth, least))).mul(part))
+        if (shown) lost.assign(lost.min(shown.light.div(shown.gain).mul(part.max(0))))
+      })
     })
     return lost
   }

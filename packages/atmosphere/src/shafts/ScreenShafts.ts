@@ -149,8 +149,9 @@ export class ScreenShafts implements ScreenShadows {
   #lostUpTo(end: RayEnd, transmittance?: Float, shown?: Vec3): Vec3 {
     const at = this.#place
     const seen = this.#seenAt(at, end, transmittance)
-    const lit = this.#lightOn(this.#rayTo(end))
-    const lost = this.grid.read(at, seen, lit, shown?.div(this.#gain).toConst())
+    // Asked in a branch: few pixels need the air on their ray.
+    const lit = (to: Float): Vec3 => this.#lightOn(this.#rayTo(end))(to)
+    const lost = this.grid.read(at, seen, lit, shown && { light: shown, gain: this.#gain })
     return lost.mul(this.#gain.mul(this.#strength))
   }
 

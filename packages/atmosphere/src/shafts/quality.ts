@@ -10,6 +10,8 @@ interface Quality {
   readonly groups: number
   /** Samples of the shadow in each group, and in each slice of the volume for materials. */
   readonly samples: number
+  /** Samples beyond the shadow maps of the light in each group, as of clouds. Fewer: steps in their shadows opposite the sun (*Anticrepuscular rays*). */
+  readonly beyond: number
   /** Samples of the shadow in each medium, such as fog. */
   readonly inFog: number
 }
@@ -21,6 +23,7 @@ export const qualities = {
     spacing: 10,
     groups: 2,
     samples: 3,
+    beyond: 6,
     inFog: 12
   },
   medium: {
@@ -29,6 +32,7 @@ export const qualities = {
     spacing: 8,
     groups: 3,
     samples: 3,
+    beyond: 6,
     inFog: 32
   },
   high: {
@@ -37,6 +41,7 @@ export const qualities = {
     spacing: 3,
     groups: 4,
     samples: 4,
+    beyond: 3,
     inFog: 16
   },
   reference: {
@@ -45,6 +50,7 @@ export const qualities = {
     spacing: 1,
     groups: 64,
     samples: 8,
+    beyond: 7,
     inFog: 512
   }
 } as const satisfies Record<string, Quality>

@@ -21,6 +21,8 @@ export interface ShaftSteps {
   readonly groups: Float
   /** Samples of the shadow for each. */
   readonly samples: Float
+  /** The same beyond the map. */
+  readonly beyond: Float
   /** Samples in each medium, such as fog. Fewer than 8: grain before dark fog (`'low'` quality, *Towers in haze*). */
   readonly inFog: Float
 }
@@ -60,7 +62,7 @@ interface March {
  *
  * The ray is cut into groups of samples, spaced so that each holds about the same light. In each the samples
  * give the dark part and its centre; there the light is evaluated once, which is exact where it varies linearly.
- * Where there are shadows beyond the map, the ray goes on there with about as many samples again.
+ * Where there are shadows beyond the map, the ray goes on there with samples of its own.
  *
  * @param jitter - Place of samples in their steps, in (0, 1).
  */
@@ -68,7 +70,7 @@ export function lostLight(
   view: ViewUniforms,
   shadowedAir: ShadowedAir,
   shaftRay: ShaftRay,
-  { groups, samples, inFog }: ShaftSteps,
+  { groups, samples, beyond, inFog }: ShaftSteps,
   jitter: Float
 ): Vec4 {
   const { air, viewpoint } = view
@@ -122,7 +124,7 @@ export function lostLight(
       return
     }
     const near = partAt(mapped).max(first).toConst() as Float
-    // Each has groups by its light, and as many samples whatever that is; beyond the map shadows are soft.
+    // Each has groups by its light, and as many samples whatever that is.
     const part = (from: Float, width: Float, most: Float, isMapped: boolean): Stretch => {
       const some = groups
         .mul(width.div(lit.max(1e-6)))
@@ -132,7 +134,7 @@ export function lostLight(
       return { from, width, groups: some, samples: each, isMapped }
     }
     marchStretch('near', part(first, near.sub(first).toConst(), samples, true))
-    marchStretch('far', part(near, near.oneMinus().toConst(), samples.sub(1), false))
+    marchStretch('far', part(near, near.oneMinus().toConst(), beyond, false))
     if (missingAt === null) return
     const places = int(groups.mul(DIFFUSE_PART).max(LEAST_DIFFUSE))
     const diffuse = {

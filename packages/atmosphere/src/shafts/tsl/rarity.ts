@@ -2,7 +2,7 @@ import { log2, mix } from 'three/tsl'
 import type { Float } from '../../tsl-types'
 
 /** Least 1/τ² of what is seen through a foreground [–]. */
-const LEAST_RARITY = 1e-6
+export const LEAST_RARITY = 1e-6
 
 /** Part of the light of clear air without end that comes from an optical path τ: much as 1 − exp(−τ) is τ/√(1 + τ²), by 1/τ². */
 export const shownOf = (rarity: Float): Float => rarity.add(1).inverseSqrt().toConst()
