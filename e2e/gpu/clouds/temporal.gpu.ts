@@ -174,7 +174,7 @@ gpuTest(
   t =>
     withShared(t, async shared => {
       const sky = new Sky(shared)
-      await sky.settle(164)
+      await sky.settle(100)
       let before = await sky.draw(36)
       let most = 0
       for (let i = 0; i < 5; i++) {

@@ -18,7 +18,8 @@ const size = { width: 96, height: 54 }
 const FRAMES = 40
 const TURN = 0.012
 const TURNS = 12
-/** Frames of which the supersampled picture is the mean. */
+/** Frames in which the exact picture settles, and of which it is then the mean. */
+const SETTLING = 12
 const SAMPLES = 16
 /** Part of a picture of 960×540 pixels and 60°, in which clouds are as large as there; frames in which they settle, and those of the exact picture. */
 const part = { width: 48, height: 27, field: 3, frames: 128, exactFrames: 24 } as const
@@ -97,7 +98,7 @@ gpuTest(
     await exact.bake()
     const supersampled = async (angle: number): Promise<Picture> => {
       exact.turn(angle)
-      for (let i = 0; i < FRAMES - SAMPLES; i++) await exact.draw()
+      for (let i = 0; i < SETTLING; i++) await exact.draw()
       return exact.supersample()
     }
     const still = await supersampled(0)

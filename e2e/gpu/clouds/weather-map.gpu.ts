@@ -17,7 +17,10 @@ import { fallColumn } from '../../../packages/clouds/src/precipitation/tsl/fallC
 import { cloudScene, mean, offsets, worldMap } from '../harness/cloud-scene'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectTrue } from '../harness/expect'
-import { gpuTest } from '../harness/gpu-test'
+import { gpuTest, takeFineShadows } from '../harness/gpu-test'
+
+// The users' maps of the weather.
+takeFineShadows('half')
 
 /** Greatest mean error of the weather's sum [–], and of the shift of noise [m]. */
 const SUM = 0.04
