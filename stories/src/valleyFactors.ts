@@ -76,13 +76,13 @@ export function applyFactors(
   const haze = Number(state.haze) * state.hazeStrength
   const shaftStrength = Number(state.shafts) * state.shaftStrength
   const starsStrength = Number(state.stars) * state.starlight
-  const milkyWay = Number(state.milkyWay) * state.starlight
+  const galaxyStrength = Number(state.milkyWay) * state.starlight
   const glowStrength = Number(state.airglow) * state.airglowStrength
   const strength = Number(state.moon)
   // #region factors
   // #shown import { airStyle } from '@welkin/atmosphere'
   // #shown const [haze, twilightSaturation, ambient, shaftStrength] = [0.7, 1.3, 1.1, 0.8]
-  // #shown const [starsStrength, milkyWay, glowStrength] = [2, 2, 2]
+  // #shown const [starsStrength, galaxyStrength, glowStrength] = [2, 2, 2]
   // #shown const [strength, earthshine, purkinjeShift] = [1, 3, 1]
   // #shown const style = airStyle()
   // #shown atmosphere.add(style)
@@ -90,7 +90,7 @@ export function applyFactors(
   node.ambient = ambient
   shafts.strength = shaftStrength
   starlight.intensity = starsStrength
-  galaxy.intensity = milkyWay
+  galaxy.intensity = galaxyStrength
   glow.intensity = glowStrength
   luna.set({ strength, earthshine })
   exposure.purkinjeShift = purkinjeShift // nights as eyes see them

@@ -21,7 +21,7 @@ export interface ShaftSteps {
   readonly groups: Float
   /** Samples of the shadow for each. */
   readonly samples: Float
-  /** The same beyond the map. */
+  /** Samples beyond the map in each group. */
   readonly beyond: Float
   /** Samples in each medium, such as fog. Fewer than 8: grain before dark fog (`'low'` quality, *Towers in haze*). */
   readonly inFog: Float
