@@ -122,9 +122,12 @@ function streetMaterial(noise: DataTexture, scale: Node<'float'>): MeshStandardN
 function leafMaterial(noise: DataTexture, scale: Node<'float'>): MeshStandardNodeMaterial {
   const green = color('#3f5a2c')
   const material = new MeshStandardNodeMaterial({ roughness: 0.9 })
-  const { x, y, z } = positionLocal
-  const clumps = texture(noise, vec2(x.add(y), z.sub(y)).div(3)).r
-  material.colorNode = green.mul(clumps.add(0.5))
+  const { y } = positionLocal
+  // From three sides: none is drawn out.
+  const from = [positionLocal.xy, positionLocal.yz, positionLocal.zx]
+  const [a, b, c] = from.map(place => texture(noise, place.div(2.3)).r)
+  const clumps = a.add(b).add(c).div(3).sub(0.5).mul(1.7).add(0.5).clamp(0, 1).toVar()
+  material.colorNode = green.mul(clumps.mul(0.8).add(0.5))
   const below = y.div(-LAMPLIGHT).exp().mul(normalLocal.y.mul(-0.4).add(0.6))
   const lamplight = below.mul(clumps.mul(clumps)).mul(4 * LIT.leaves)
   material.emissiveNode = color('#3f4411').mul(lamplight).mul(scale) // of green leaves
