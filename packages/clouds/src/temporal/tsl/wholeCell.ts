@@ -54,7 +54,7 @@ function cornerKernel(part: Vec2): CornerKernel {
   return { blend, first, second }
 }
 
-/** What a pixel takes from its cell if the whole of it passes the depth test. */
+/** Light and distance of a cell at a pixel, for cells that pass the depth test as a whole. */
 export interface WholeCell {
   readonly kernel: CornerKernel
   /** Square of the distance to the nearest corner [marched pixels²]. */
