@@ -130,8 +130,8 @@ gpuTest(
     const litTo = (distance: Float): Vec3 => vec3(distance.div(1e4)).toConst()
     const march = (_: Vec2, pixel: Vec2): LostLight => {
       const air = airTo(float(1000))
-      // More light in the one direction, of which as much more is lost.
-      const lit = (): Vec3 => litTo(float(1000)).mul(pixel.x.add(1))
+      // More light in the one direction, of which as much more is lost: so steep that pixels look up their own.
+      const lit = (): Vec3 => litTo(float(1000)).mul(pixel.x.mul(0.25).exp2())
       return { lost: lit().mul(part), lit, whole: air.rarity, ...air }
     }
     grid.render(renderer, 1, march)

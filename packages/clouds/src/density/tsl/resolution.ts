@@ -1,5 +1,5 @@
 import { If, float, smoothstep } from 'three/tsl'
-import { billowForm, strengthForm } from '../formConstants'
+import { strengthForm } from '../formConstants'
 import { noisePeriods, REGION_SIZE, scaleWeights } from '../../layers/layerUniforms'
 import { NOISE_SIZE } from '../../noise/noiseSizes'
 import type { Float } from '../../tsl-types'
@@ -60,10 +60,18 @@ function lostVariance(layer: LayerNodes, footprint: Float, level: Float, cloudLe
     .add(regionVariance.mul(lostShare(regionLevel.sub(0.8))))
 }
 
-/** Resolution of a layer's samples of a footprint. To be called inside of a shader function. */
-export function resolutionAt(layer: LayerNodes, footprint: Float): Resolution {
+/**
+ * Resolution of a layer's samples of a footprint. To be called inside of a shader function.
+ *
+ * @param billowFootprints - Footprints by which billows are looked up.
+ */
+export function resolutionAt(
+  layer: LayerNodes,
+  footprint: Float,
+  billowFootprints = 1
+): Resolution {
   const level = weatherLevel(footprint, layer.perWeatherPeriod)
-  const width = footprint.mul(layer.perShapePeriod).mul(billowForm.footprints)
+  const width = footprint.mul(layer.perShapePeriod).mul(billowFootprints)
   const shapeLevel = levelOf(width, 1 / NOISE_SIZE.shape)
   const cloudLevel = level
     .sub(layer.coarseness.mul(strengthForm.levelsPerOctave))

@@ -1,6 +1,7 @@
 import { If, float } from 'three/tsl'
 import { select } from '../../select'
 import type { CloudField } from '../CloudField'
+import { billowForm } from '../formConstants'
 import type { Bool, Float, Vec3 } from '../../tsl-types'
 import { billows, bulge, detail, fineShare, MOST_DETAIL, topBillows } from './billows'
 import { crumbDensity, densityOf, edgeAt } from './density'
@@ -140,7 +141,8 @@ export function sampleLayerAt(
       return { extinction, strength: select(extinction.greaterThan(0), 1, CLEAR_STRENGTH) }
     })
   const weather = unpackBackground(background)
-  const resolution = resolutionAt(layer, footprintOf(field, middle))
+  const { billowFootprints = billowForm.footprints } = middle
+  const resolution = resolutionAt(layer, footprintOf(field, middle), billowFootprints)
   const { footprint, unresolvedFraction } = resolution
   const bodies = samples.map(each => bodyAt(field, layer, weather, each, resolution, storm))
   const found = bodies.map(({ strength }) => ({

@@ -91,7 +91,7 @@ export function shadowRay(field: CloudField, ray: ShadowRayUniforms, falling?: S
     const texel = lightRay(field, ray)
     const sampleAt = (at: Float, distance: Float): CloudSample => {
       const offset = texel.start.add(ray.toLight.mul(at)).toConst() as Vec3
-      return { offset, ...field.view.localCoordinates(offset), distance }
+      return { offset, ...field.view.localCoordinates(offset), distance, billowFootprints: 1 }
     }
     /** Means of 1, place on the ray, and its square, times the layers' weights. */
     const weighted = vec3(0).toVar() as Vec3
