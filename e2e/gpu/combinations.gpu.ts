@@ -7,7 +7,7 @@ import { featureNames, hours, predict, seen, type FeatureName, type Hour } from 
 import { watchFragmentShaders } from './harness/shaders'
 
 const SEED = 20_260
-const COUNT = 40
+const COUNT = 60
 /** Least sets that a feature is in. */
 const LEAST_SETS = 5
 /** Textures that a stage may sample. */

@@ -106,8 +106,7 @@ export const LowOrbit: Story = {
     sunElevation: 35,
     sunAzimuth: 25,
     exposure: -2
-  },
-  tags: ['screenshot', 'webgpu-only']
+  }
 }
 
 /** No picture at all: continents are procedural. */
