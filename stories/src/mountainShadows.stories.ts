@@ -44,4 +44,4 @@ export default meta
 type Story = StoryObj<MountainShadowsArgs>
 
 /** A ridge 30 km away before the rising sun. */
-export const Sunrise: Story = {}
+export const Sunrise: Story = { tags: ['screenshot', 'webgpu-only'] }

@@ -48,7 +48,7 @@ export default meta
 type Story = StoryObj<RealHeightsArgs>
 
 /** A village between ridges of Tennessee, measured from space. */
-export const Village: Story = {}
+export const Village: Story = { tags: ['screenshot', 'webgpu-only'] }
 
 /** All of the grid, at which a plain begins. */
 export const Range: Story = { args: { view: 'range' } }
