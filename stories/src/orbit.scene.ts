@@ -11,7 +11,7 @@ import { Ellipsoid } from '@welkin/geo'
 import { PerspectiveCamera, Scene, Vector3 } from 'three'
 import { earthPictures } from './globe/earthPictures'
 import { Explorer } from './moving/Explorer'
-import { FLIGHT_SECONDS, travel } from './moving/travel'
+import { TURN_SECONDS, travel } from './moving/travel'
 import { changeOf, createRenderer, exposureOf, frameClock, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
@@ -77,7 +77,7 @@ export async function createOrbit(
   let mover: Explorer | undefined
   const apply = (): void => {
     const { altitude, angle, fieldOfView } = current
-    if (isMoved([altitude, angle])) travel(mover, camera, placeCamera, FLIGHT_SECONDS)
+    if (isMoved([altitude, angle])) travel(mover, camera, placeCamera, TURN_SECONDS)
     camera.fov = fieldOfView
     camera.updateProjectionMatrix()
   }

@@ -11,7 +11,7 @@ import { Matrix4, PerspectiveCamera, Scene, Vector3 } from 'three'
 import { Air } from './air'
 import { earthPictures } from './globe/earthPictures'
 import { Explorer } from './moving/Explorer'
-import { FLIGHT_SECONDS, travel } from './moving/travel'
+import { TURN_SECONDS, travel } from './moving/travel'
 import { changeOf, createRenderer, exposureOf, frameClock, WARM_UP_FRAMES } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 
@@ -119,7 +119,7 @@ export async function createPlanets(
   const moveCamera = (mover?: Explorer): void => {
     const { height, pitch, longitude, latitude } = current
     if (!isMoved([height, pitch, longitude, latitude])) return
-    travel(mover, camera, placeCamera, FLIGHT_SECONDS)
+    travel(mover, camera, placeCamera, TURN_SECONDS)
   }
   // Before a link has its say.
   moveCamera()

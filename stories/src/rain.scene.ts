@@ -56,8 +56,9 @@ export async function createRain(
   const current = { ...args }
   travel(undefined, camera, placeCamera, 0)
   const numbers = () => {
-    const { sun, exposure } = current
-    return { sun, exposure, azimuth: viewOf(current).azimuth }
+    const { sun, exposure, rate, virgaDepth, freezingLevel } = current
+    const { azimuth } = viewOf(current)
+    return { sun, exposure, azimuth, rate, virgaDepth, freezingLevel }
   }
   const change = new ViewChange<View, ReturnType<typeof numbers>>(viewOf(current), numbers())
   const air = new Air(renderer, scene, camera, 'post')
@@ -88,9 +89,8 @@ export async function createRain(
   const isOther = changeOf()
   /** Shows the change of views as far as it has come. */
   const show = (): void => {
-    const { rate, virgaDepth, freezingLevel } = current
     const { shown, part } = change
-    const { sun: elevation, azimuth, exposure } = change.numbers
+    const { sun: elevation, azimuth, exposure, ...fall } = change.numbers
     if (isOther(shown)) {
       atmosphere.place(shown.place)
       layers.copy(cloudPreset(shown.clouds))
@@ -100,7 +100,7 @@ export async function createRain(
     full.forEach((coverage, i) => (layers.at(i).coverage = coverage * part))
     atmosphere.setSunAngles(elevation, azimuth)
     renderer.toneMappingExposure = exposureOf(exposure)
-    layer.precipitation = { ...shown.fall, rate, virgaDepth, freezingLevel }
+    layer.precipitation = { ...shown.fall, ...fall }
   }
   /** Shares of the sky that the layers of the view cover. */
   let full: number[] = []

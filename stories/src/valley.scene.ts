@@ -109,9 +109,9 @@ export async function createValley(
       const { view, hour } = current
       Object.assign(current, changes)
       const isSet = shownHour.take(current.hour, hour)
-      // The clock is ahead of an hour that the scene has shown of itself.
       // The clock goes on while features are measured.
-      if (isSet || isOther({ ...current, hour: undefined })) readout?.reset()
+      const isChanged = isOther({ ...current, hour: undefined })
+      if (isSet || isChanged) readout?.reset()
       valley.set({ ...shown(), ...off }, current.frame)
       if (isSet) valley.cycle.hour = current.hour
       if (current.view !== view) goTo(current.view, 4)

@@ -60,9 +60,6 @@ declare global {
 /** Samples of a cell along each axis: their mean is the cell's. */
 const SAMPLES = 2
 
-/** Texels of billows over the samples' distance on cells of 20 m. */
-const BILLOWS = 1.6
-
 /** Levels of clear air below the lowest base. */
 const CLEAR_LEVELS = 5
 
@@ -103,8 +100,8 @@ async function openField(request: CloudFieldRequest): Promise<OpenField> {
   field.bake(renderer)
   const camera = new PerspectiveCamera()
   camera.updateMatrixWorld()
-  // Details down to a sample's width are wanted, and billows down to their texels.
-  field.pixelAngle.value = BILLOWS / billowForm.footprints
+  // Details and billows down to a sample's width are wanted.
+  field.pixelAngle.value = 1 / billowForm.detailFootprints
 
   const altitudes = [...layers].map(layer => layer.parameters)
   // Bases are edges only where clear air is below them.
@@ -150,7 +147,7 @@ async function openField(request: CloudFieldRequest): Promise<OpenField> {
           .add(axes[2].mul(altitude.sub(drop).sub(field.view.height)))
           .toConst() as Node<'vec3'>
         const distance = float(cell / SAMPLES)
-        return { offset, ...field.view.localCoordinates(offset), distance }
+        return { offset, ...field.view.localCoordinates(offset), distance, billowFootprints: 1 }
       }
       const lowest = sampleAt(float(bottom as unknown as Node<'float'>).toConst())
       forLayers(field, number => {

@@ -37,7 +37,7 @@ const EXTENT = 48_500
 const EVEN = 11_000
 const EVEN_PART = 0.8
 
-/** Metres for each unit of the map's half width in its even part, and growth of that beyond [1/m]. */
+/** Metres for each unit of the map's half width in its even part, and what is added to a distance for the square of one further out [m]. */
 const UNIT = EVEN / EVEN_PART
 const GROWTH = (EXTENT - EVEN - UNIT * (1 - EVEN_PART)) / (1 - EVEN_PART) ** 2
 

@@ -10,6 +10,6 @@ export interface CloudSample {
   up: Vec3
   /** Distance from the camera, which sets the level of detail [m]. */
   distance: Float
-  /** Footprints by which billows are looked up; left out, those of pictures. Sums along rays of light take 1: they show no moss. */
+  /** Footprints by which billows are looked up; left out, `billowForm.footprints`. Shadow maps take 1: they show no moss. */
   billowFootprints?: number
 }

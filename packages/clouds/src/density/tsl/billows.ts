@@ -29,7 +29,7 @@ export interface Billows {
  *
  * @param offset - Displacement from the camera, in the mapped space [m].
  * @param shift - `shift` of `WeatherBackground`.
- * @param level - `Resolution.shapeLevel`: what is finer than the sample's footprint is left out.
+ * @param level - `Resolution.shapeLevel`: what is finer than `billowForm.footprints` of the sample is left out.
  * @see Schneider & Vos 2015, "The real-time volumetric cloudscapes of Horizon: Zero Dawn", "Modeling"
  * @see Bridson et al. 2007, "Curl-noise for procedural fluid flow", §2
  */
@@ -63,7 +63,7 @@ const NEARER_FROM = 5 / 24
 
 /**
  * Detail finer than billows at places near each other, of unit deviation near by: three octaves of one noise, down to a
- * thousandth of its period. What is finer than the samples' footprint is left out.
+ * thousandth of its period. What is finer than `billowForm.detailFootprints` of the samples is left out.
  *
  * To be called inside of a shader function.
  */

@@ -63,7 +63,7 @@ function lostVariance(layer: LayerNodes, footprint: Float, level: Float, cloudLe
 /**
  * Resolution of a layer's samples of a footprint. To be called inside of a shader function.
  *
- * @param billowFootprints - Footprints by which billows are looked up.
+ * @param billowFootprints - Footprints by which billows are looked up; left out where none are.
  */
 export function resolutionAt(
   layer: LayerNodes,

@@ -63,6 +63,11 @@ export function cloudySteps(
   }
 }
 
+/** Forgets the last clear sample, after a jump over air that was not sampled. */
+export const forgetClear = (last: LastClear): void => {
+  last.assign(vec2(0, NOT_SAMPLED))
+}
+
 /**
  * Keeps the last clear sample of a pair.
  *

@@ -17,7 +17,7 @@ import type { ShadingContext } from '../../light/tsl/shadingContext'
 import { FAR_AWAY, layersAt, nextLayerBoundary } from './layerBoundaries'
 import { FARTHEST_KNOWN, type ClearAir } from './clearAir'
 import { addPair, seenClouds, seenState, endStratum, type SeenClouds } from './seenPoints'
-import { cloudySteps, keepLastClear, lastClear } from './edges'
+import { cloudySteps, forgetClear, keepLastClear, lastClear } from './edges'
 import { advance, enterSteps, nextSteps, stepState } from './steps'
 
 /**
@@ -119,6 +119,7 @@ export function marchClouds(
     enterSteps(state, field, quality, density.mul(light.depthScale), position, boundary)
     If(base.greaterThan(top), () => {
       position.assign(boundary)
+      forgetClear(last)
     }).ElseIf(entry.equal(0), () => {
       entry.assign(position.max(1))
     })
@@ -158,6 +159,7 @@ export function marchClouds(
       () => {
         If(position.lessThan(until), () => {
           position.assign(until)
+          forgetClear(last)
           state.likely.assign(0)
         }).ElseIf(position.greaterThan(from), () => {
           position.assign(FAR_AWAY)
