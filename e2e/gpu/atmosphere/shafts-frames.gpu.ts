@@ -168,7 +168,7 @@ gpuTest(
     light.dispose()
     set.dispose()
   },
-  // `shafts-maps` reads cascades on both.
+  // `shafts-maps` reads cascades' shadows of surfaces on both.
   { backends: ['webgpu'] }
 )
 

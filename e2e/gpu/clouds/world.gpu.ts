@@ -428,6 +428,6 @@ gpuTest(
     shared.light.dispose()
     atmosphere.dispose()
   },
-  // The test with everything on draws all of these on both backends.
+  // On WebGL the material with six maps, in `everything`, has clouds' shadows, environment and moonlight.
   { backends: ['webgpu'] }
 )

@@ -19,9 +19,11 @@ export const SAME_DEPTH = 0.35
 /** Part of the light of air that shadows take at most where there are none to speak of. Greater: halos at silhouettes and at edges of clouds. */
 const LEAST_LOST = 5e-4
 
-/** Octaves beyond all depths: those of means where next to nothing is lost, added where light is steep, and of pixels whose grounds are at different depths; less than none where light is steep there. */
+/** Mark in place of a depth: next to nothing is lost [octaves]. */
 export const LIT_DEPTH = 512
+/** Mark that is added to a depth where light is steep: no depth is below −30 [octaves]. */
 const STEEP_DEPTH = -540
+/** Mark of pixels whose grounds are at different depths, less than none where light is steep, too [octaves]. */
 const APART_DEPTH = 6e4
 
 /**
