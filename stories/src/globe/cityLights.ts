@@ -3,6 +3,7 @@ import type { DataTexture } from 'three'
 import { attribute, float, texture, uniform, vec3 } from 'three/tsl'
 import type { Node, UniformNode } from 'three/webgpu'
 import { mipmapped } from '../mipmapped'
+import { pixelsOf } from '../pixels'
 
 /** Luminance of the brightest cities as a whole, seen from above [cd/m²]. */
 const BRIGHTEST = 2
@@ -21,15 +22,7 @@ export interface CityLights {
  */
 function townsOf(picture: HTMLImageElement): DataTexture {
   const { width, height } = picture
-  const canvas = document.createElement('canvas')
-  canvas.width = width
-  canvas.height = height
-  const context = canvas.getContext('2d', { willReadFrequently: true })
-  if (context === null) throw new Error('createCityLights: there is no 2D canvas')
-  // Rows of a texture go up.
-  context.scale(1, -1)
-  context.drawImage(picture, 0, -height)
-  const { data } = context.getImageData(0, 0, width, height)
+  const data = pixelsOf(picture, 'createCityLights')
   return mipmapped(townShares(data), width, height, RedFormat)
 }
 
