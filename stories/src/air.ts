@@ -10,7 +10,7 @@ import type { Atmosphere, AutoExposureNode } from '@welkin/atmosphere'
 import type { Camera, Scene } from 'three'
 import { pass } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
-import type { Node, WebGPURenderer } from 'three/webgpu'
+import type { Node, PassNode, TextureNode, WebGPURenderer } from 'three/webgpu'
 import { quickStart } from './quickStart'
 import type { QuickStart } from './quickStart'
 
@@ -29,12 +29,13 @@ function airOf(scene: Scene, atmosphere: Atmosphere): QuickStart {
 
 /** The post path's picture: what a further effect, such as clouds, takes and where it goes. */
 export interface AirPost {
+  readonly scenePass: PassNode
   /** The scene without its air. */
   readonly picture: Node
   /** The scene with its air. */
   readonly color: Node
   /** The scene's depth. */
-  readonly depth: Node
+  readonly depth: TextureNode
   readonly pipeline: RenderPipeline
 }
 
@@ -67,7 +68,7 @@ export class Air {
       const pipeline = new RenderPipeline(renderer)
       pipeline.outputNode = color
       // #endregion
-      this.post = { picture: scenePass.getTextureNode(), color, depth, pipeline }
+      this.post = { scenePass, picture: scenePass.getTextureNode(), color, depth, pipeline }
       this.#pipeline = pipeline
     }
   }

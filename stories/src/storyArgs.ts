@@ -1,5 +1,6 @@
 import type { ArgTypes } from '@storybook/html-vite'
 import type { RendererArgs, TimeArgs } from './scene'
+import { ANTIALIASING, type ValleyEffects } from './valley/finish'
 
 /** A choice among things with labels. */
 export const choiceOf = (things: Readonly<Record<string, { readonly label: string }>>) => ({
@@ -70,3 +71,33 @@ export const shaftArgTypes = {
     description: '0 as exposureFor says'
   }
 } satisfies ArgTypes
+
+const POST_EFFECTS = { table: { category: 'Post effects' } }
+
+/** Switch of a post effect. */
+export const effect = (name: string, description: string): object => ({
+  name,
+  description,
+  control: 'boolean',
+  ...POST_EFFECTS
+})
+
+/** Switches of post effects. */
+export const effectArgTypes: ArgTypes<ValleyEffects> = {
+  antialiasing: {
+    name: 'Smooth edges',
+    ...choiceOf(ANTIALIASING),
+    ...POST_EFFECTS
+  },
+  occlusion: effect('Ambient occlusion', 'Of the light of the sky alone (GTAO)'),
+  localExposure: effect(
+    'Local exposure',
+    'Land under a bright sky is brighter and the sky darker, as in a print that is dodged and burned'
+  ),
+  bloom: effect('Bloom', 'A halo about what is bright'),
+  depthOfField: effect(
+    'Depth of field',
+    'Sharp in the middle; the nearer that is, the more is blurred'
+  ),
+  motionBlur: effect('Motion blur', 'While the camera turns or flies')
+}

@@ -30,10 +30,14 @@ import {
   type TimeArgs
 } from './scene'
 import { GroundCamera } from './terrain/GroundCamera'
+import { GroundFinish, hasEffects } from './terrain/GroundFinish'
 import { groundHandle } from './terrain/groundHandle'
 import { LAKES } from './terrain/lakes'
+import { addNightSky } from './terrain/NightSky'
 import { Vegetation } from './terrain/vegetation/Vegetation'
 import type { GroundView } from './terrain/viewAlong'
+import type { ValleyEffects } from './valley/finish'
+import { drawnOf } from './valleyAir'
 
 export const VIEWS = {
   meadow: {
@@ -102,7 +106,7 @@ export const COLORS = {
   pages: { label: 'Pages: there, fading in, missing' }
 } as const
 
-export interface TerrainArgs extends RendererArgs, TimeArgs {
+export interface TerrainArgs extends RendererArgs, TimeArgs, ValleyEffects {
   view: keyof typeof VIEWS
   color: keyof typeof COLORS
   wireframe: boolean
@@ -123,6 +127,8 @@ export interface TerrainArgs extends RendererArgs, TimeArgs {
   mist: number
   /** Grass, flowers and trees about the viewer. */
   vegetation: boolean
+  /** Stars, Milky Way, moon and airglow with their light, and the sun's halo. */
+  night: boolean
 }
 
 /** Way of the tour, and the time that it takes [s]. */
@@ -150,7 +156,8 @@ export async function createTerrain(
   const current = { ...args }
   const atmosphere = new Atmosphere()
   atmosphere.place(ORIGIN)
-  const isPost = args.clouds || args.shafts
+  const isFinished = hasEffects(args)
+  const isPost = args.clouds || args.shafts || isFinished
   const air = new Air(renderer, scene, camera, isPost ? 'post' : args.path, atmosphere)
   const mist = heightFog({ base: 0, falloff: MIST_FALLOFF, density: 0 })
   if (args.mist > 0) atmosphere.add(mist)
@@ -171,9 +178,10 @@ export async function createTerrain(
   let color: Node | undefined = post?.color
   const mountains = args.shafts ? groundShadow(atmosphere, terrain) : undefined
   const shafts = mountains && lightShafts(atmosphere, camera, sun).add(mountains)
-  if (mountains && shafts && post) {
-    onGround = terrainShadow(mountains, sun, onGround)
-    color = aerialPerspective(post.picture, post.depth, camera, atmosphere, { shafts })
+  if (mountains && shafts) onGround = terrainShadow(mountains, sun, onGround)
+  if (post && (shafts || isFinished)) {
+    const picture = isFinished ? drawnOf(post.scenePass) : post.picture
+    color = aerialPerspective(picture, post.depth, camera, atmosphere, { shafts })
   }
   let cloudsNode: CloudsNode | undefined
   if (args.clouds && post && color) {
@@ -184,7 +192,13 @@ export async function createTerrain(
     cloudSkyLight(air.sky, cloudsNode)
     shafts?.add(cloudAirShadow(cloudsNode))
   }
-  if (post && color) post.pipeline.outputNode = color
+  const lights = args.night ? addNightSky(scene, atmosphere, cloudsNode) : []
+  let finish: GroundFinish | undefined
+  if (post && color) {
+    post.pipeline.outputNode = color
+    if (isFinished)
+      finish = new GroundFinish(renderer, post, color, camera, atmosphere, cloudsNode, args.frame)
+  }
   Object.assign(sun.shadow, { shadowNode: onGround })
   const overlay = cloudsNode && cloudEnvironment(cloudsNode)
   const environment = args.mirror ? skyEnvironment(atmosphere, overlay ? { overlay } : {}) : null
@@ -205,6 +219,7 @@ export async function createTerrain(
 
   const apply = (): void => {
     applyTime(renderer, air, current)
+    finish?.set(current, current.exposure)
     terrain.material.wireframe = current.wireframe
     terrain.windSpeed = current.windSpeed
     mist.density = current.mist / 1000
@@ -229,13 +244,15 @@ export async function createTerrain(
     ground,
     views: VIEWS,
     apply,
+    finish,
     follow() {
       // A still is planted at once.
       plants?.update(camera, args.frame ? 0 : performance.now() / 1000, args.frame ? Infinity : 3)
     },
     dispose() {
       setPlants(false)
-      for (const owned of [shafts, mountains, environment, cloudsNode, ...lakes]) owned?.dispose()
+      for (const owned of [shafts, mountains, environment, cloudsNode, finish, ...lights, ...lakes])
+        owned?.dispose()
     }
   })
 }

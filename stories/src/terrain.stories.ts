@@ -1,16 +1,24 @@
 import type { Meta, StoryObj } from '@storybook/html-vite'
 import { mount } from './mount'
-import { choiceOf, rendererArgTypes, shaftArgTypes, timeArgTypes } from './storyArgs'
+import {
+  choiceOf,
+  effectArgTypes,
+  rendererArgTypes,
+  shaftArgTypes,
+  timeArgTypes
+} from './storyArgs'
 import { storyCode } from './storyCode'
 import { COLORS, createTerrain, VIEWS } from './terrain.scene'
 import type { TerrainArgs } from './terrain.scene'
+import { hasEffects, NO_EFFECTS } from './terrain/GroundFinish'
 
 const meta: Meta<TerrainArgs> = {
   title: 'Terrain',
   render: mount(
     createTerrain,
     storyCode(['terrain.scene.ts', 'terrain']),
-    ({ clouds, mist, shafts, mirror }: TerrainArgs) => [clouds, mist > 0, shafts, mirror].join()
+    ({ clouds, mist, shafts, mirror, night, ...effects }: TerrainArgs) =>
+      [clouds, mist > 0, shafts, mirror, night, hasEffects(effects)].join()
   ),
   argTypes: {
     view: {
@@ -36,6 +44,12 @@ const meta: Meta<TerrainArgs> = {
     clouds: { name: 'Clouds', control: 'boolean' },
     mist: { name: 'Mist [1/km]', control: { type: 'range', min: 0, max: 6, step: 0.1 } },
     vegetation: { name: 'Grass, flowers, trees', control: 'boolean' },
+    night: {
+      name: 'Moon, stars, airglow',
+      control: 'boolean',
+      description: "With their light on the land, and the sun's halo"
+    },
+    ...effectArgTypes,
     ...timeArgTypes,
     ...rendererArgTypes
   },
@@ -52,6 +66,8 @@ const meta: Meta<TerrainArgs> = {
     clouds: false,
     mist: 0,
     vegetation: false,
+    night: false,
+    ...NO_EFFECTS,
     day: Date.UTC(2026, 5, 21),
     hour: 15.5,
     exposure: 0,
@@ -87,6 +103,26 @@ export const Weather: Story = {
 export const Shafts: Story = {
   name: 'Mountain shadows and clouds',
   args: { view: 'range', clouds: true, shafts: true, mirror: true, hour: 4.7, exposure: 1.5 }
+}
+
+/** All at once: mist, clouds, shafts, plants, and what a camera does, exposed by the picture. */
+export const Everything: Story = {
+  name: 'Everything at once',
+  args: {
+    view: 'lake',
+    clouds: true,
+    mist: 1,
+    shafts: true,
+    mirror: true,
+    night: true,
+    vegetation: true,
+    hour: 5.5,
+    antialiasing: 'traa',
+    occlusion: true,
+    localExposure: true,
+    bloom: true,
+    motionBlur: true
+  }
 }
 
 /** Above the ridges. */

@@ -1,11 +1,10 @@
 import { cloudQualities } from '@welkin/clouds'
 import type { Meta, StoryObj } from '@storybook/html-vite'
 import { mount } from './mount'
-import { choiceOf, rendererArgTypes } from './storyArgs'
+import { choiceOf, effect, effectArgTypes, rendererArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 import { createValley } from './valley.scene'
 import type { ValleyArgs } from './valley.scene'
-import { ANTIALIASING } from './valley/finish'
 import { openingState } from './valley/openingState'
 import { VIEWS } from './valley/views'
 import { weathers } from './valley/weather'
@@ -18,16 +17,6 @@ const code = storyCode(
 )
 
 const part = (name: string): object => ({ name, control: 'boolean', table: { category: 'Parts' } })
-
-const POST_EFFECTS = { table: { category: 'Post effects' } }
-
-/** Switch of a post effect. */
-const effect = (name: string, description: string): object => ({
-  name,
-  description,
-  control: 'boolean',
-  ...POST_EFFECTS
-})
 
 /** Slider of an artistic factor. */
 const factor = (name: string, description: string): object => ({
@@ -99,26 +88,11 @@ const meta: Meta<ValleyArgs> = {
     water: part('Lake'),
     environment: part('Sky in the lake'),
     autoExposure: part('Automatic exposure'),
-    antialiasing: {
-      name: 'Smooth edges',
-      ...choiceOf(ANTIALIASING),
-      ...POST_EFFECTS
-    },
-    occlusion: effect('Ambient occlusion', 'Of the light of the sky alone (GTAO)'),
+    ...effectArgTypes,
     reflections: effect(
       'Reflections',
       'The lake mirrors what is in the picture (SSR); without, the sky alone'
     ),
-    localExposure: effect(
-      'Local exposure',
-      'Land under a bright sky is brighter and the sky darker, as in a print that is dodged and burned'
-    ),
-    bloom: effect('Bloom', 'A halo about what is bright'),
-    depthOfField: effect(
-      'Depth of field',
-      'Sharp in the middle; the nearer that is, the more is blurred'
-    ),
-    motionBlur: effect('Motion blur', 'While the camera turns or flies'),
     hazeStrength: factor('Haze', 'Optical depth of the air between camera and scene'),
     twilightSaturation: factor('Colour of twilight', 'Saturation; 0 is grey'),
     shaftStrength: factor('Light shafts', 'Light that shadowed air loses'),

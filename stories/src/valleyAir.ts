@@ -55,7 +55,7 @@ export interface ValleyAir {
 }
 
 /** Draws a picture to a texture, with the distance along the camera's axis in alpha: of the sky, the greatest. */
-function withDepth(picture: Node, scenePass: PassNode): PictureNode {
+export function withDepth(picture: Node, scenePass: PassNode): PictureNode {
   const depth = scenePass.getViewZNode().negate().min(SKY_DEPTH)
   return new PictureNode('Picture', vec4((picture as Node<'vec4'>).rgb, depth))
 }

@@ -5,6 +5,7 @@ import type { Air } from '../air'
 import type { RendererArgs, SceneHandle } from '../scene'
 import { storyHandle } from '../storyHandle'
 import type { GroundCamera } from './GroundCamera'
+import type { GroundFinish } from './GroundFinish'
 import type { GroundView } from './viewAlong'
 
 /** A scene on a terrain, with views to choose from. */
@@ -23,6 +24,8 @@ interface GroundScene<Args extends RendererArgs, Views extends Record<string, Gr
   readonly load?: () => Promise<void>
   /** Moves on what follows the camera, ahead of each frame. */
   readonly follow?: () => void
+  /** Post effects, if there are any. */
+  readonly finish?: GroundFinish | undefined
   /** Frees what else the scene has made. */
   readonly dispose?: () => void
 }
@@ -40,6 +43,7 @@ export function groundHandle<Args extends RendererArgs, Views extends Record<str
   apply,
   load,
   follow,
+  finish,
   dispose
 }: GroundScene<Args, Views>): SceneHandle<Args & { view: keyof Views }> {
   apply()
@@ -47,7 +51,8 @@ export function groundHandle<Args extends RendererArgs, Views extends Record<str
   const draw = (): void => {
     ground.update(air.sun)
     follow?.()
-    air.render()
+    if (finish) finish.draw(() => air.render())
+    else air.render()
   }
   return storyHandle<Args & { view: keyof Views }>({
     renderer,

@@ -1,5 +1,5 @@
 import { skyVelocity } from '@welkin/atmosphere'
-import { cloudVelocity } from '@welkin/clouds'
+import { cloudVelocity, type CloudsNode } from '@welkin/clouds'
 import { UnsignedByteType } from 'three'
 import type { PerspectiveCamera, TextureDataType } from 'three'
 import { bloom } from 'three/addons/tsl/display/BloomNode.js'
@@ -30,7 +30,7 @@ export const ANTIALIASING = {
   taau: { label: 'TAAU (over frames, of a quarter of the pixels)' }
 } as const
 
-/** Post effects of the valley. */
+/** Post effects over a picture. */
 export interface ValleyEffects {
   antialiasing: keyof typeof ANTIALIASING
   /** Occlusion of the light of the sky (GTAO). */
@@ -53,12 +53,23 @@ const SMALL = 0.5
 
 type Disposable = { dispose(): void }
 
+/** Picture that post effects follow. */
+export interface FinishedPicture extends Pick<
+  ValleyAir,
+  'scenePass' | 'depth' | 'picture' | 'exposure'
+> {
+  /** Clouds in it, which move over the screen by themselves. */
+  readonly clouds?: CloudsNode | undefined
+  /** True if all that is drawn stands still, and its material tells no velocities. */
+  readonly standsStill?: boolean
+}
+
 /** Post effects over the exposed picture, in the order of a camera: motion, lens, film. */
 export class ValleyFinish {
   readonly #renderer: Renderer
   readonly #pipeline: RenderPipeline
   readonly #camera: PerspectiveCamera
-  readonly #air: ValleyAir
+  readonly #air: FinishedPicture
   /** Effects that are on, and what is to be freed with them. */
   #key = ''
   #used: Disposable[] = []
@@ -69,7 +80,7 @@ export class ValleyFinish {
     renderer: Renderer,
     pipeline: RenderPipeline,
     camera: PerspectiveCamera,
-    air: ValleyAir
+    air: FinishedPicture
   ) {
     this.#renderer = renderer
     this.#pipeline = pipeline
@@ -174,19 +185,30 @@ export class ValleyFinish {
 
   /** Motion of ground, clouds and sky over the screen since the last frame. */
   #motion(scale: number): ReturnType<typeof rtt> {
-    const { scenePass, depth, clouds } = this.#air
+    const { scenePass, depth, standsStill } = this.#air
+    if (standsStill) {
+      const still = stillVelocity(depth, this.#camera)
+      return this.#texture(this.#withClouds(still), 'Motion', scale)
+    }
     scenePass.setMRT(mrt({ output, velocity }))
     const sky = skyVelocity(scenePass.getTextureNode('velocity'), depth, this.#camera)
-    return this.#texture(this.#keep(cloudVelocity(sky, clouds)), 'Motion', scale)
+    return this.#texture(this.#withClouds(sky), 'Motion', scale)
   }
 
   /** Coarse motion for motion blur: of clouds and of what stands still, which costs the scene's pass nothing. */
   #motionOfCamera(): PictureNode {
-    const velocity = stillVelocity(this.#air.depth, this.#camera)
-    const motion = this.#keep(cloudVelocity(velocity, this.#air.clouds))
-    const drawn = this.#drawn(motion, 'Motion')
+    const drawn = this.#drawn(
+      this.#withClouds(stillVelocity(this.#air.depth, this.#camera)),
+      'Motion'
+    )
     drawn.scale = COARSE
     return drawn
+  }
+
+  /** Velocities of a picture with those of its clouds. */
+  #withClouds(velocities: Node): Node {
+    const { clouds } = this.#air
+    return clouds ? this.#keep(cloudVelocity(velocities, clouds)) : velocities
   }
 
   /**

@@ -1,3 +1,4 @@
+import { unjitteredProjection } from '@welkin/atmosphere'
 import { Matrix4, type PerspectiveCamera } from 'three'
 import { Fn, getViewPosition, uniform, uv, vec4 } from 'three/tsl'
 import type { Node, TextureNode } from 'three/webgpu'
@@ -12,24 +13,26 @@ import type { Node, TextureNode } from 'three/webgpu'
 export function stillVelocity(depth: TextureNode, camera: PerspectiveCamera): Node<'vec4'> {
   const previous = new Matrix4()
   const current = new Matrix4()
+  const projection = new Matrix4()
   let isFirst = true
   /** View space to the clip space of the last frame. */
   const toPrevious = uniform(new Matrix4()).onFrameUpdate((_frame, { value }) => {
-    const { projectionMatrix, matrixWorldInverse, matrixWorld } = camera
+    const { matrixWorldInverse, matrixWorld } = camera
     previous.copy(current)
-    current.multiplyMatrices(projectionMatrix, matrixWorldInverse)
+    current.multiplyMatrices(unjitteredProjection(camera, projection), matrixWorldInverse)
     if (isFirst) previous.copy(current)
     isFirst = false
     value.multiplyMatrices(previous, matrixWorld)
   })
   const unprojection = uniform(camera.projectionMatrixInverse)
+  const toScreen = uniform(projection)
   return Fn(() => {
-    const at = uv()
     const { r } = depth as unknown as { r: Node<'float'> }
-    const place = getViewPosition(at, r, unprojection)
-    const before = (toPrevious as unknown as Node<'mat4'>).mul(vec4(place, 1)).toConst()
-    const now = at.mul(2).sub(1)
-    const ndc = before.xy.div(before.w.max(1e-6))
-    return vec4(now.x.sub(ndc.x), now.y.negate().sub(ndc.y), 0, 1)
+    const place = vec4(getViewPosition(uv(), r, unprojection), 1).toConst()
+    const ndcBy = (matrix: Node): Node<'vec2'> => {
+      const clip = (matrix as Node<'mat4'>).mul(place).toConst()
+      return clip.xy.div(clip.w.max(1e-6))
+    }
+    return vec4(ndcBy(toScreen).sub(ndcBy(toPrevious)), 0, 1)
   })()
 }
