@@ -16,7 +16,7 @@ const meta: Meta<TerrainArgs> = {
   title: 'Terrain',
   render: mount(
     createTerrain,
-    storyCode(['terrain.scene.ts', 'terrain']),
+    storyCode(['terrain.scene.ts', 'terrain'], ['terrain/NightSky.ts', 'night']),
     ({ clouds, mist, shafts, mirror, night, ...effects }: TerrainArgs) =>
       [clouds, mist > 0, shafts, mirror, night, hasEffects(effects)].join()
   ),

@@ -10,7 +10,8 @@ const argsOf = ({ args }: { args?: Partial<TerrainArgs> }): TerrainArgs =>
 it('has a picture drawn to a texture for each post effect, and for nothing else', () => {
   const bare = argsOf(Meadow)
   expect(hasEffects(bare)).toBe(false)
-  expect(hasEffects({ ...bare, clouds: true, vegetation: true })).toBe(false)
+  const full: TerrainArgs = { ...bare, clouds: true, vegetation: true }
+  expect(hasEffects(full)).toBe(false)
   for (const name of Object.keys(NO_EFFECTS) as (keyof ValleyEffects)[]) {
     const on = name === 'antialiasing' ? 'traa' : true
     expect([name, hasEffects({ ...bare, [name]: on })]).toEqual([name, true])
