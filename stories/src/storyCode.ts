@@ -6,6 +6,7 @@ const sources = import.meta.glob<string>(
     './air.ts',
     './*.scene.ts',
     './street/Street.ts',
+    './terrain/NightSky.ts',
     './valleyAir.ts',
     './valleyFactors.ts',
     './valley/flashes.ts'
