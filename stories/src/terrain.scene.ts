@@ -188,6 +188,7 @@ export async function createTerrain(
     const layers = cloudPreset('fairWeather')
     layers.at(0).set(CLOUDS)
     color = cloudsNode = clouds(color, post.depth, camera, atmosphere, layers)
+    if (args.frame) cloudsNode.time = 0
     onGround = cloudShadow(cloudsNode, onGround)
     cloudSkyLight(air.sky, cloudsNode)
     shafts?.add(cloudAirShadow(cloudsNode))
