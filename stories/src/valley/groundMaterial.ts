@@ -82,6 +82,9 @@ const CROWNED = 97
 const CLUMPS = 71
 const WOODLAND = 0.12
 
+/** Distance within which they are drawn [m]. */
+const CLUMPED = 9000
+
 /** Width of the edge of a wood, in its share of the ground. */
 const EDGE = 0.16
 
@@ -117,9 +120,12 @@ function turned({ x, z }: Node<'vec3'>, period: number): Node<'vec2'> {
 /**
  * Crowns in woods, clumps of grass elsewhere: height about 0, and for crowns its differences to the pixels at the right and below, since those
  * between neighbours would be blocks of four pixels.
+ *
+ * @param isNear - False where they are too far away to be drawn: 0 there.
  */
 const clumpsIn = (
   picture: Texture,
+  isNear: Node<'bool'>,
   isWood: Node<'bool'>,
   { right, down }: Footprint
 ): Node<'vec3'> =>
@@ -127,7 +133,7 @@ const clumpsIn = (
     const found = vec3(0).toVar()
     const placed = (period: number): Node<'vec2'>[] =>
       [positionWorld, right, down].map(way => turned(way, period).toConst())
-    If(isWood, () => {
+    If(isNear.and(isWood), () => {
       const [at, across, along] = placed(CROWNED)
       const heightAt = (place: Node<'vec2'>): Node<'float'> =>
         texture(picture, place).grad(across, along).g.sub(0.5).mul(2)
@@ -135,7 +141,7 @@ const clumpsIn = (
       found.assign(
         vec3(here, heightAt(at.add(across)).sub(here), heightAt(at.add(along)).sub(here))
       )
-    }).Else(() => {
+    }).ElseIf(isNear, () => {
       const [at, across, along] = placed(CLUMPS)
       found.x.assign(texture(picture, at).grad(across, along).r.sub(0.5).mul(2))
     })
@@ -235,7 +241,9 @@ export function groundMaterial(
   const footprint = { right: dFdx(positionWorld).toVar(), down: dFdy(positionWorld).toVar() }
   const cover = attribute<'vec2'>('cover', 'vec2')
   const isWood = cover.x.greaterThan(WOODLAND)
-  const clumped = clumpsIn(picture, isWood, footprint).mul(upTo(9000)).toVar()
+  const clumped = clumpsIn(picture, distance.lessThan(CLUMPED), isWood, footprint)
+    .mul(upTo(CLUMPED))
+    .toVar()
   const clumps = clumped.x
   const fine = grain.add(clumps).add(patches).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
