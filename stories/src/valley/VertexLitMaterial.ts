@@ -71,7 +71,7 @@ function directionTo(light: DirectionalLight): Vec3 {
     })
     _directions.set(light, direction)
   }
-  return direction as unknown as Vec3
+  return direction
 }
 
 /** Shadows of clouds without those that they are multiplied with. */
