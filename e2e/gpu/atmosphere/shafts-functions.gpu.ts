@@ -149,7 +149,7 @@ gpuTest(
       renderer,
       // Nearer than all.
       places.map(([x, y]) => [x, y, 1, 0]),
-      ({ x, y, z }) => vec4(grid.read(grid.meanAt(vec2(x, y)), airTo(z), litTo), 0)
+      ({ x, y, z }) => vec4(grid.read(vec2(x, y), airTo(z), litTo), 0)
     )
     // The last pixel knows of no other in the corner: it takes its part of what clear air shows up to there, τ/√(1 + τ²) where τ is 1.
     const last = 0.1 * 2 ** (STEEP * (width / 2 - 1 + height / 2 - 1)) * Math.SQRT1_2

@@ -61,13 +61,6 @@ export interface SeenAir {
   readonly isSeen?: Bool
 }
 
-/** Mean of the light that the pixels around a place in the picture lose, with its log₂ depth. */
-export interface MeanLoss {
-  /** The place among means, in texture coordinates. */
-  readonly place: Vec2
-  readonly texel: Vec4
-}
-
 /** Light of a ray, linear sRGB of about that for unit irradiance. */
 export interface LostLight extends SeenAir {
   /** 1/τ² up to what was drawn, whatever is before it. */
@@ -219,28 +212,24 @@ export class LostLightGrid {
     return rarity.sub(least).max(rarity.mul(LEAST_LEFT)).inverseSqrt().mul(this.#freePath)
   }
 
-  /** Reads the mean about a place in the picture. */
-  meanAt(at: Vec2): MeanLoss {
-    const place = at.mul(this.#scale).add(this.#offset).toConst() as Vec2
-    return { place, texel: sampleLevel0(this.#texels, place).toConst() }
-  }
-
   /**
    * Light that a pixel loses, as {@link LostLight} has it.
    *
-   * @param around - Mean about its place.
+   * @param at - Its place in the picture.
    * @param seen - Its air.
    * @param lit - Light of its air up to a distance [m]. Called in a branch.
    * @param shown - Light of all that the pixel shows, over that of the grid times a gain: it loses no greater a part of it than its air does of its own.
    */
   read(
-    around: MeanLoss,
+    at: Vec2,
     seen: SeenAir,
     lit: (distance: Float) => Vec3,
     shown?: { readonly light: Vec3; readonly gain: Float }
   ): Vec3 {
     const { rarity, least, isSeen } = seen
-    const { place: middle, texel: mean } = around
+    const middle = at.mul(this.#scale).add(this.#offset).toConst() as Vec2
+    // Light that is lost, and depth.
+    const mean = sampleLevel0(this.#texels, middle).toConst()
     const own = depthOf(rarity)
     const known = shownOf(rarity)
     const lost = mean.rgb.mul(known.div(LIGHT_SCALE)).toVar() as Vec3

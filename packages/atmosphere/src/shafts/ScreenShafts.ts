@@ -136,7 +136,7 @@ export class ScreenShafts implements ScreenShadows {
     if (this.#isDrawnByForeground) return undefined
     const lost = vec3(0).toVar()
     If(this.#strength.greaterThan(0), () => {
-      lost.assign(this.#lostUpTo(() => this.#endAt(position, isSky)))
+      lost.assign(this.#lostUpTo(this.#endAt(position, isSky)))
     })
     return lost
   }
@@ -146,16 +146,12 @@ export class ScreenShafts implements ScreenShadows {
     return this.isMesh ? screenUV : uv()
   }
 
-  #lostUpTo(endAt: (at: Vec2) => RayEnd, transmittance?: Float, shown?: Vec3): Vec3 {
+  #lostUpTo(end: RayEnd, transmittance?: Float, shown?: Vec3): Vec3 {
     const at = this.#place
-    // Reads first: a pixel waits for all of them at once.
-    const around = this.grid.meanAt(at)
-    const octaves = this.foreground?.octavesAt(at).toConst() as Float | undefined
-    const end = endAt(at)
-    const seen = this.#seenAt(at, end, octaves, transmittance)
+    const seen = this.#seenAt(at, end, transmittance)
     // Asked in a branch: few pixels need the air on their ray.
     const lit = (to: Float): Vec3 => this.#lightOn(this.#rayTo(end))(to)
-    const lost = this.grid.read(around, seen, lit, shown && { light: shown, gain: this.#gain })
+    const lost = this.grid.read(at, seen, lit, shown && { light: shown, gain: this.#gain })
     return lost.mul(this.#gain.mul(this.#strength))
   }
 
@@ -170,7 +166,7 @@ export class ScreenShafts implements ScreenShadows {
     if (this.#isDrawnByForeground) return left
     If(this.#strength.greaterThan(0), () => {
       const lost = Fn(({ renderer }): Vec3 =>
-        this.#lostUpTo(at => this.#endIn(renderer, at), transmittance, left)
+        this.#lostUpTo(this.#endIn(renderer, this.#place), transmittance, left)
       )()
       // Clouds may also give light.
       left.subAssign(lost.min(left))
@@ -179,17 +175,17 @@ export class ScreenShafts implements ScreenShadows {
   }
 
   /** Foreground before a distance [m], and air that is seen: behind a foreground shadows of materials are dimmed with them. */
-  #seenAt(at: Vec2, end: RayEnd, nearest?: Float, transmittance?: Float): Seen {
+  #seenAt(at: Vec2, end: RayEnd, transmittance?: Float): Seen {
     const { foreground, grid } = this
     const least = grid.leastRarity(end.cosView)
     const whole = this.#rarityOf(end, least)
-    if (foreground === undefined || nearest === undefined) return { rarity: whole, least }
+    if (foreground === undefined) return { rarity: whole, least }
     const passes = transmittance ?? foreground.transmittanceAt(at)
     const isSeen = passes.lessThan(CLEAR).toConst()
     const octaves = float(FAR_OCTAVES).toVar()
     const rarity = whole.add(this.#isForward.mul(UNSEEN_RARITY)).toVar()
     If(isSeen, () => {
-      octaves.assign(nearest)
+      octaves.assign(foreground.octavesAt(at))
       const nearness = octaves.negate().exp2().max(end.nearness)
       rarity.assign(rarityThrough(grid.rarityTo(nearness, least), rarity, passes))
     })
@@ -209,8 +205,7 @@ export class ScreenShafts implements ScreenShadows {
     const end = this.#endIn(renderer, at)
     const ray = this.#rayTo(end)
     const { distance } = ray
-    const distant = this.foreground?.octavesAt(at).toConst() as Float | undefined
-    const { octaves, passes, rarity, least } = this.#seenAt(at, end, distant)
+    const { octaves, passes, rarity, least } = this.#seenAt(at, end)
     const { isOrthographicCamera } = this.#shafts.camera as OrthographicCamera
     const start = isOrthographicCamera
       ? view.toMapped(vec3(this.#rays.position(renderer, at, float(0.5)).xy, 0))
