@@ -1,5 +1,5 @@
 import { cloudShadow, CloudShadowNode } from '@welkin/clouds'
-import { type DirectionalLight, type Light, Vector3 } from 'three'
+import type { Light } from 'three'
 import {
   diffuseColor,
   Fn,
@@ -8,15 +8,13 @@ import {
   normalView,
   normalViewGeometry,
   normalWorldGeometry,
-  renderGroup,
   smoothstep,
-  uniform,
   varying,
   vec3,
   vec4
 } from 'three/tsl'
 import { MeshLambertNodeMaterial, PhongLightingModel } from 'three/webgpu'
-import type { LightingModelDirectInput, Node, NodeBuilder, UniformNode } from 'three/webgpu'
+import type { LightingModelDirectInput, Node, NodeBuilder } from 'three/webgpu'
 import {
   type LightsBuilder,
   litOf,
@@ -53,25 +51,6 @@ const _distant = new WeakSet<Light>()
 /** Has the light of a distant lamp found at the vertices: it costs pixels nothing. Before the first frame. */
 export function setDistant(light: Light): void {
   _distant.add(light)
-}
-
-/** Directions to directional lights in view space, found once: three finds them in each pixel. */
-const _directions = new WeakMap<Light, UniformNode<'vec3', Vector3>>()
-
-const _target = new Vector3()
-
-function directionTo(light: DirectionalLight): Vec3 {
-  let direction = _directions.get(light)
-  if (direction === undefined) {
-    direction = uniform(new Vector3()).setGroup(renderGroup)
-    direction.onRenderUpdate(({ camera }, { value }) => {
-      _target.setFromMatrixPosition(light.target.matrixWorld)
-      value.setFromMatrixPosition(light.matrixWorld).sub(_target)
-      if (camera !== null) value.transformDirection(camera.matrixWorldInverse)
-    })
-    _directions.set(light, direction)
-  }
-  return direction
 }
 
 /** Shadows of clouds without those that they are multiplied with. */
@@ -123,15 +102,11 @@ class VertexLightingModel extends PhongLightingModel {
       return
     }
     const { color, shadow } = this.#colorOf(input)
-    const lightDirection = light.isDirectionalLight
-      ? directionTo(light as DirectionalLight)
-      : (input.lightDirection as Vec3)
-    const add = (lightColor: Vec3): void =>
-      super.direct({ ...input, lightDirection, lightColor }, builder)
+    const add = (lightColor: Vec3): void => super.direct({ ...input, lightColor }, builder)
     If(litOf(light).greaterThan(0), () => {
       if (shadow === null) return add(color)
       // Shadows are looked up only where there is light to lose.
-      const facing = normalView.dot(lightDirection).greaterThan(0)
+      const facing = normalView.dot(input.lightDirection as Vec3).greaterThan(0)
       const bright = color.r.add(color.g).add(color.b).greaterThan(UNSEEN)
       If(facing.and(bright), () => add(color.mul(shadow)))
     })

@@ -20,7 +20,7 @@ import {
 } from 'three/tsl'
 import type { Node } from 'three/webgpu'
 import { crops, roadAt } from './fields'
-import { clumpsIn, cracksIn, grainNormal, turned } from './groundDetail'
+import { clumpsIn, cracksIn, grainNormal, levelOf, turned } from './groundDetail'
 import { createGroundNoise } from './groundNoise'
 import type { OpenSky } from './OpenSky'
 import { PatchMap } from './PatchMap'
@@ -32,10 +32,6 @@ export const RADIUS = 6_371_000
 
 /** Height up to which land is farmed [m]. */
 export const FARMED = 40
-
-/** Parts of a slope, 1 − its normal's height, between which rock comes through; and heights between which snow comes to lie [m]. */
-const ROCKY = [0.27, 0.42] as const
-const SNOWY = [1350, 1750] as const
 
 /** Depth by which the snow line comes down while snow lies everywhere [m]. */
 const FALLEN_SNOW = 2300
@@ -129,7 +125,7 @@ export function groundMaterial(
   const grain = Fn(() => {
     const [tufts, sum] = [float(0).toVar(), float(0).toVar()]
     If(distance.lessThan(MIDDLE), () => {
-      tufts.assign(texture(picture, bent).grad(bentAcross, bentAlong).r.sub(0.5))
+      tufts.assign(texture(picture, bent).level(levelOf(bentAcross, bentAlong)).r.sub(0.5))
       sum.assign(tufts.mul(upTo(MIDDLE).mul(0.85)))
     })
     If(distance.lessThan(NEAR), () => {
@@ -157,7 +153,7 @@ export function groundMaterial(
   const uneven = patches.mul(0.42).add(clumps.mul(0.12)).add(broad.mul(0.1))
   const wooded = cover.x.add(uneven.mul(smoothstep(0, 0.25, cover.x)))
   const forest = smoothstep(0.42 - EDGE, 0.42 + EDGE, wooded).toVar()
-  const rocky = smoothstep(...ROCKY, slope).toVar()
+  const rocky = smoothstep(0.27, 0.42, slope).toVar()
   const cracks = Fn(() => {
     const found = vec2(0).toVar()
     If(rocky.greaterThan(0), () => {
@@ -168,26 +164,12 @@ export function groundMaterial(
     return found
   })().toVar()
   // Seen along the ground, differences between pixels are those of noise.
-  const facing = Fn(() => {
-    const found = float(0).toVar()
-    If(rocky.max(forest).greaterThan(0), () => {
-      const way = cameraPosition.sub(positionWorld).normalize()
-      found.assign(smoothstep(0.1, 0.45, broadNormal.dot(way)))
-    })
-    return found
-  })().toConst()
+  const way = cameraPosition.sub(positionWorld).normalize()
+  const facing = smoothstep(0.1, 0.45, broadNormal.dot(way)).toConst()
   const stones = grain.mul(GRASS).mul(upTo(SHADED)).add(cracks.x.mul(facing)).toConst()
   const crowns = clumped.yz.mul(forest.mul(CROWNS).mul(upTo(WOODED)).mul(facing))
   const rise = vec2(dFdx(stones), dFdy(stones)).add(crowns)
-  const normal = Fn(() => {
-    const found = broadNormal.toVar()
-    // Derivatives belong outside of branches.
-    const [right, down] = [footprint.right.toConst(), footprint.down.toConst()]
-    If(rise.x.abs().add(rise.y.abs()).greaterThan(0), () => {
-      found.assign(grainNormal(broadNormal, rise, { right, down }))
-    })
-    return found
-  })().toVar()
+  const normal = grainNormal(broadNormal, rise, footprint).toVar()
   material.normalNode = transformNormalToView(normal)
   const dry = broad.mul(0.6).add(fine.mul(0.28)).add(0.43).clamp()
   const meadow = mix(vec3(0.053, 0.086, 0.027), vec3(0.14, 0.134, 0.055), dry).toVar()
@@ -211,63 +193,52 @@ export function groundMaterial(
   const hue = mix(vec3(0.93, 1.02, 0.86), vec3(1.08, 0.99, 1.06), tuft.add(0.5))
   const bright = hue.mul(float(0.95).add(fine.mul(0.2)).add(tuft.mul(0.24)))
   const snowLine = height.add(snowCoverNode.mul(FALLEN_SNOW)).toVar()
-  const snowed = snowLine.add(broad.mul(170)).add(fine.mul(40)).toConst()
+  const snow = smoothstep(1350, 1750, snowLine.add(broad.mul(170)).add(fine.mul(40)))
   const white = vec3(0.82, 0.84, 0.87).mul(rough.mul(0.07).add(1))
   // Of woods one sees the trunks and the undersides of branches, too.
   const dark = forest.mul(mix(float(WOODS[0]), float(WOODS[1]), canopy)).clamp()
-  // Far above fields, woods and walls it covers all.
-  const isSnow = snowed
-    .greaterThan(SNOWY[1])
-    .and(slope.lessThan(ROCKY[0]))
-    .and(forest.lessThanEqual(0))
-    .and(height.greaterThan(FARMED))
-    .and(distance.greaterThan(MIDDLE))
   // Heights are those that no noise takes a part beyond.
   const color = Fn(() => {
-    // Before branches: three computes in each of them what it meets there first.
+    // Before branches: three computes in each of them what it meets there first. Slopes are read with all else.
     const cracked = cracks.toConst()
-    const wood = forest.toConst()
-    const result = white.toVar()
-    If(isSnow.not(), () => {
-      const land = farmed.toConst()
-      result.assign(land.rgb)
-      const weathered = fine.mul(0.35).add(cracked.y.mul(0.55)).add(0.5).clamp()
-      const rock = mix(vec3(0.105, 0.1, 0.094), vec3(0.29, 0.274, 0.247), weathered)
-      const alpine = mix(
-        vec3(0.095, 0.1, 0.045),
-        rock,
-        smoothstep(1050, 1700, height.add(broad.mul(150)))
-      )
-      // It lies in cracks, and is blown off what is between them.
-      const steep = slope.add(cracked.y.mul(0.06))
-      const stalks = land.a.mul(grain.mul(0.5).add(1)).add(smoothstep(0.2, 0.55, tuft).mul(STUBBLE))
-      const whitened = smoothstep(...SNOWY, snowed)
-        .mul(smoothstep(0.46, 0.3, steep))
-        .mul(dark.oneMinus())
-        .mul(stalks.clamp().oneMinus())
-      const cover = (other: Node<'vec3'>, share: Node<'float'>): void =>
-        void result.assign(mix(result, other, share))
-      If(height.greaterThan(350), () =>
-        cover(alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
-      )
-      If(height.lessThan(4.5), () =>
-        cover(vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
-      )
-      If(wood.greaterThan(0), () => cover(trees, wood))
-      result.mulAssign(bright)
-      If(rocky.greaterThan(0), () => cover(rock.mul(bright), rocky))
-      // Wet rough ground: of what it scatters, a share 1 − 1/n² comes back (Lekner & Dorf 1988).
-      If(wetnessNode.greaterThan(0), () => {
-        const back = result.oneMinus().mul(1.777).add(result)
-        result.divAssign(mix(vec3(1), back, wetnessNode))
-        // A wet road mirrors the sky as water does; ruts and stones scatter half of it.
-        const grazing = cameraPosition.sub(positionWorld).normalize().y.oneMinus()
-        const isRoad = smoothstep(0.5, CLEARED, land.a)
-        const mirrored = grazing.pow(5).mul(wetnessNode).mul(isRoad).mul(MIRRORED)
-        result.assign(mix(result, vec3(1), mirrored))
-      })
-      If(snowLine.greaterThan(900), () => cover(white, whitened))
+    const land = farmed.toConst()
+    const result = land.rgb.toVar()
+    const weathered = fine.mul(0.35).add(cracked.y.mul(0.55)).add(0.5).clamp()
+    const rock = mix(vec3(0.105, 0.1, 0.094), vec3(0.29, 0.274, 0.247), weathered)
+    const alpine = mix(
+      vec3(0.095, 0.1, 0.045),
+      rock,
+      smoothstep(1050, 1700, height.add(broad.mul(150)))
+    )
+    // It lies in cracks, and is blown off what is between them.
+    const steep = slope.add(cracked.y.mul(0.06))
+    const stalks = land.a.mul(grain.mul(0.5).add(1)).add(smoothstep(0.2, 0.55, tuft).mul(STUBBLE))
+    const whitened = snow
+      .mul(smoothstep(0.46, 0.3, steep))
+      .mul(dark.oneMinus())
+      .mul(stalks.clamp().oneMinus())
+    const cover = (other: Node<'vec3'>, share: Node<'float'>): void =>
+      void result.assign(mix(result, other, share))
+    If(height.greaterThan(350), () =>
+      cover(alpine, smoothstep(550, 1050, height.add(broad.mul(120))))
+    )
+    If(height.lessThan(4.5), () =>
+      cover(vec3(0.17, 0.15, 0.12), smoothstep(2.6, 0.6, height.add(fine.mul(0.5))))
+    )
+    If(forest.greaterThan(0), () => cover(trees, forest))
+    result.mulAssign(bright)
+    If(rocky.greaterThan(0), () => cover(rock.mul(bright), rocky))
+    // Wet rough ground: of what it scatters, a share 1 − 1/n² comes back (Lekner & Dorf 1988).
+    If(wetnessNode.greaterThan(0), () => {
+      const back = result.oneMinus().mul(1.777).add(result)
+      result.divAssign(mix(vec3(1), back, wetnessNode))
+      // A wet road mirrors the sky as water does; ruts and stones scatter half of it.
+      const grazing = cameraPosition.sub(positionWorld).normalize().y.oneMinus()
+      const isRoad = smoothstep(0.5, CLEARED, land.a)
+      const mirrored = grazing.pow(5).mul(wetnessNode).mul(isRoad).mul(MIRRORED)
+      result.assign(mix(result, vec3(1), mirrored))
     })
+    If(snowLine.greaterThan(900), () => cover(white, whitened))
     return result
   })()
   material.colorNode = color
