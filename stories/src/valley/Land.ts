@@ -3,6 +3,7 @@ import { Group, type Mesh, type PerspectiveCamera } from 'three'
 import { disposeMeshes } from '../scene'
 import type { ValleyPrecipitation } from './falling'
 import { createBirches, createForest, createGrove } from './forest'
+import { drawFromNear } from './drawOrder'
 import { createGround } from './ground'
 import { OpenSky } from './OpenSky'
 import { Relief } from './relief'
@@ -86,11 +87,12 @@ export class Land extends Group {
   }
 
   /**
-   * Sorts the trees for a camera.
+   * Sorts ground and trees for a camera.
    *
    * @returns True if other trees are drawn now.
    */
   update(camera: PerspectiveCamera): boolean {
+    for (const tile of this.#ground.children) drawFromNear(tile as Mesh, camera.position)
     return this.#trees.map(each => each.update(camera)).includes(true)
   }
 

@@ -2,6 +2,7 @@ import { BufferAttribute, BufferGeometry, Group, MathUtils, Mesh, PlaneGeometry 
 import type { SurfaceWater } from '@welkin/atmosphere'
 import type { Node } from 'three/webgpu'
 import { HALF_ROAD, STRIP } from './fields'
+import { tileIndex } from './drawOrder'
 import { FARMED, groundMaterial, RADIUS } from './groundMaterial'
 import { ridges, smoothNoise } from './noise'
 import { LAKE, VILLAGE } from './places'
@@ -110,7 +111,7 @@ function tileOf(grid: BufferGeometry, quads: number, column: number, row: number
     })
     tile.setAttribute(name, new BufferAttribute(values, itemSize))
   }
-  return tile.setIndex(new PlaneGeometry(1, 1, size, size).index)
+  return tile
 }
 
 /**
@@ -145,9 +146,10 @@ export function createGround(
   const ground = new Group()
   const material = groundMaterial(water, relief, lamplight, sky)
   const along = Math.max(quads / TILE, 1)
+  const index = tileIndex(Math.min(TILE, quads))
   for (let i = 0; i < along ** 2; i++) {
     const tile = tileOf(geometry, quads, i % along, Math.floor(i / along))
-    const mesh = new Mesh(tile, material)
+    const mesh = new Mesh(tile.setIndex(index), material)
     // Tiles at their places are drawn from near to far, so that hills hide what is behind them.
     tile.computeBoundingSphere()
     mesh.position.copy(tile.boundingSphere!.center)

@@ -18,9 +18,9 @@ import {
   vec3,
   vec4
 } from 'three/tsl'
-import type { Texture } from 'three'
 import type { Node } from 'three/webgpu'
 import { crops, roadAt } from './fields'
+import { clumpsIn, cracksIn, grainNormal, levelOf, turned } from './groundDetail'
 import { createGroundNoise } from './groundNoise'
 import type { OpenSky } from './OpenSky'
 import { PatchMap } from './PatchMap'
@@ -64,111 +64,15 @@ const WOODED = 14_000
 /** Brightness of crowns' tops over the noise that they follow, and of what is between them. */
 const CANOPY = [-0.4, 0.35] as const
 
-/** Widths over which noise of rock repeats [m]; heights of its cracks over it [m]. Layers of rock are flatter than wide. */
-const CRACKS = [
-  [1240, 11],
-  [173, 1.9]
-] as const
-const LAYERED = 1.7
-
-/** Pixels over which rock is blurred: its bumps are differences between pixels, of which sharp ones would be pepper. */
-const BLURRED = 1.5
-
 /** Anisotropy of rock. Less: walls seen from aside are smeared down their slopes. */
 const ROCK_ANISOTROPY = 4
 
-/** Widths over which crowns, and clumps of grass elsewhere, repeat [m]; share of woods from which ground is theirs. */
-const CROWNED = 97
-const CLUMPS = 71
+/** Share of woods from which ground has crowns, not clumps of grass, and distance within which these are drawn [m]. */
 const WOODLAND = 0.12
+const CLUMPED = 9000
 
 /** Width of the edge of a wood, in its share of the ground. */
 const EDGE = 0.16
-
-/**
- * Normal of ground with grain on it (Mikkelsen 2010, "Bump mapping unparametrized surfaces").
- *
- * @param rise - Difference of the grain's height to the pixels at the right and below [m].
- */
-function grainNormal(
-  normal: Node<'vec3'>,
-  rise: Node<'vec2'>,
-  { right, down }: Footprint
-): Node<'vec3'> {
-  const [first, second] = [down.cross(normal).toConst(), normal.cross(right).toConst()]
-  const area = right.dot(first).toConst()
-  const slope = first.mul(rise.x).add(second.mul(rise.y)).mul(area.sign())
-  return normal.mul(area.abs()).sub(slope).normalize()
-}
-
-/** Ways on the ground from a pixel to its neighbours [m]. */
-interface Footprint {
-  readonly right: Node<'vec3'>
-  readonly down: Node<'vec3'>
-}
-
-/** Coordinates of noise that repeats after a period [m]: the plane is turned, for no two periods have a common multiple. */
-function turned({ x, z }: Node<'vec3'>, period: number): Node<'vec2'> {
-  const [cos, sine] = [Math.cos(period), Math.sin(period)].map(t => t / period)
-  const place = vec2(x, z)
-  return vec2(place.dot(vec2(cos, sine)), place.dot(vec2(-sine, cos)))
-}
-
-/**
- * Crowns in woods, clumps of grass elsewhere: height about 0, and for crowns its differences to the pixels at the right and below, since those
- * between neighbours would be blocks of four pixels.
- */
-const clumpsIn = (
-  picture: Texture,
-  isWood: Node<'bool'>,
-  { right, down }: Footprint
-): Node<'vec3'> =>
-  Fn(() => {
-    const found = vec3(0).toVar()
-    const placed = (period: number): Node<'vec2'>[] =>
-      [positionWorld, right, down].map(way => turned(way, period).toConst())
-    If(isWood, () => {
-      const [at, across, along] = placed(CROWNED)
-      const heightAt = (place: Node<'vec2'>): Node<'float'> =>
-        texture(picture, place).grad(across, along).g.sub(0.5).mul(2)
-      const here = heightAt(at).toConst()
-      found.assign(
-        vec3(here, heightAt(at.add(across)).sub(here), heightAt(at.add(along)).sub(here))
-      )
-    }).Else(() => {
-      const [at, across, along] = placed(CLUMPS)
-      found.x.assign(texture(picture, at).grad(across, along).r.sub(0.5).mul(2))
-    })
-    return found
-  })()
-
-/**
- * Noise of rock, seen from the side: from above, steep slopes would have streaks. Height of cracks [m], and their brightness in [−1, 1].
- *
- * @param isEastern - True for walls that face east or west rather than north or south.
- */
-function cracksIn(
-  picture: Texture,
-  isEastern: Node<'bool'>,
-  { right, down }: Footprint
-): Node<'vec2'> {
-  const flat = (at: Node<'vec3'>): Node<'vec2'> =>
-    vec2(isEastern.select(at.z, at.x), at.y.mul(LAYERED)).toConst()
-  const [place, across, along] = [flat(positionWorld), flat(right), flat(down)]
-  let sum: Node<'vec2'> = vec2(0)
-  for (const [period, deep] of CRACKS) {
-    const change = [across, along].map(each => each.mul(BLURRED / period))
-    const noise = texture(picture, place.div(period))
-      .grad(change[0], change[1])
-      .r.sub(0.5)
-      .mul(2)
-      .toConst()
-    // Cracks are sharp, what is between them is round.
-    const cracked = noise.abs().mul(1.6).min(1).sub(0.4).toConst()
-    sum = sum.add(vec2(cracked.mul(deep), cracked.add(noise.mul(0.5))))
-  }
-  return sum
-}
 
 /** Periods of the noise that tells broad parts of the land apart, and of that of patches [m]. */
 const BROAD = [1310, 4170] as const
@@ -221,7 +125,7 @@ export function groundMaterial(
   const grain = Fn(() => {
     const [tufts, sum] = [float(0).toVar(), float(0).toVar()]
     If(distance.lessThan(MIDDLE), () => {
-      tufts.assign(texture(picture, bent).grad(bentAcross, bentAlong).r.sub(0.5))
+      tufts.assign(texture(picture, bent).level(levelOf(bentAcross, bentAlong)).r.sub(0.5))
       sum.assign(tufts.mul(upTo(MIDDLE).mul(0.85)))
     })
     If(distance.lessThan(NEAR), () => {
@@ -235,7 +139,9 @@ export function groundMaterial(
   const footprint = { right: dFdx(positionWorld).toVar(), down: dFdy(positionWorld).toVar() }
   const cover = attribute<'vec2'>('cover', 'vec2')
   const isWood = cover.x.greaterThan(WOODLAND)
-  const clumped = clumpsIn(picture, isWood, footprint).mul(upTo(9000)).toVar()
+  const clumped = clumpsIn(picture, distance.lessThan(CLUMPED), isWood, footprint)
+    .mul(upTo(CLUMPED))
+    .toVar()
   const clumps = clumped.x
   const fine = grain.add(clumps).add(patches).toVar()
   const height = positionWorld.y.add(place.dot(place).div(2 * RADIUS)).toVar()
@@ -293,10 +199,10 @@ export function groundMaterial(
   const dark = forest.mul(mix(float(WOODS[0]), float(WOODS[1]), canopy)).clamp()
   // Heights are those that no noise takes a part beyond.
   const color = Fn(() => {
+    // Before branches: three computes in each of them what it meets there first. Slopes are read with all else.
+    const cracked = cracks.toConst()
     const land = farmed.toConst()
     const result = land.rgb.toVar()
-    // Before branches: three computes in each of them what it meets there first.
-    const cracked = cracks.toConst()
     const weathered = fine.mul(0.35).add(cracked.y.mul(0.55)).add(0.5).clamp()
     const rock = mix(vec3(0.105, 0.1, 0.094), vec3(0.29, 0.274, 0.247), weathered)
     const alpine = mix(
