@@ -10,6 +10,7 @@ import type { Neighbourhood } from './varianceClip'
 import {
   inMarched,
   OWN_SAMPLE,
+  sharedWeightOf,
   weightOf,
   type CellPosition,
   type CornerKernel,
@@ -38,6 +39,8 @@ export interface Estimate extends Neighbourhood {
   readonly weight: Float
   /** True at a marched pixel. */
   readonly isOwn: Bool
+  /** Weight of the nearest marched pixel as a sample of its neighbours, in [0, 1]. */
+  readonly shared: Float
 }
 
 /** Variables that an estimate is gathered in. */
@@ -146,6 +149,7 @@ export function estimate(
     statistics,
     distance,
     weight: select(nearest.lessThan(NO_CORNER), weight.max(LEAST_WEIGHT), 0).toConst(),
-    isOwn
+    isOwn,
+    shared: sharedWeightOf(viewRays, nearest)
   }
 }

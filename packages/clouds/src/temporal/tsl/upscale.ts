@@ -29,6 +29,13 @@ const YOUNG_SAMPLES = 1.5
 const OLD_SAMPLES = 4
 
 /**
+ * Accumulated samples up to which a pixel also takes those of its neighbours, and from which on it goes by its own alone: few rays are
+ * grain. Fewer: grain at edges of near clouds for seconds (*Inside a cloud*); more: still clouds blur (*Cumulus*).
+ */
+const SHARED_SAMPLES = 2
+const OWN_SAMPLES = 8
+
+/**
  * Standard deviation of a cell's brightness, in parts of it, and three times that of its transmittance, below which clouds have nothing that
  * a bilinear look-up would blur [–]. Greater: faster (*Inside a cloud*), and thin clouds blur while they move.
  */
@@ -58,16 +65,20 @@ function accumulate(
       .mul(history.stationarity.mul(STATIONARY_SLACK))
       .max(LEAST_SLACK)
     const clipped = varianceClip(history.light, now, frame.clipDeviations, slack)
-    // A pixel with a sample of its own learns nothing from its neighbours'.
     const isOwn = now.isOwn.or(history.samples.lessThan(1)).toConst() as Bool
-    const weight = select(isOwn, now.weight, 0).toConst()
+    // A pixel with samples enough of its own learns nothing from its neighbours'.
+    const youth = history.samples
+      .sub(OWN_SAMPLES)
+      .mul(1 / (SHARED_SAMPLES - OWN_SAMPLES))
+      .clamp()
+    const weight = select(isOwn, now.weight, 0).max(now.shared.mul(youth)).toConst()
     const all = history.samples.add(weight).toConst()
     const share = weight.div(all).toConst() as Float
     light.assign(mix(clipped, now.light, share))
     samples.assign(all.min(frame.maxSamples))
     // Clouds that this frame does not see are where they were; a distance is of all the light that is shown.
     If(history.hasClouds, () => {
-      const known = select(now.light.w.greaterThan(CLEAR), 0, share)
+      const known = select(isOwn.and(now.light.w.lessThanEqual(CLEAR)), share, 0)
       distance.assign(mix(history.distance, distance, known))
     })
   })
