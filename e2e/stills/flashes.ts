@@ -29,7 +29,7 @@ export const flashes = [
     about: 'a tower lit from inside, from an airliner',
     clouds: { preset: 'cumulonimbus' },
     place: { longitude: 139.571, latitude: 35.995 },
-    lightning: { kind: 'cloud', azimuth: -5, distance: 20_000 },
+    lightning: { kind: 'cloud', azimuth: -4, distance: 19_000 },
     altitude: 7000,
     sun: new Date('2026-06-14T14:00:00Z'),
     view: { azimuth: 0, pitch: -4 },

@@ -22,11 +22,11 @@ import { matrix3, matrix4, number, vector3 } from '../uniforms'
 import { STORED_POWER, type PlacedChannel } from './channel'
 import { channelColor } from './tsl/channelColor'
 
-/** Deviation of a channel's width in the picture [pixels]. Smaller: steps at its edges. */
-const WIDTH = 0.8
+/** Deviation of a channel's width in the picture [pixels], whose light has pixels of two. Smaller: steps at its edges. */
+const WIDTH = 1.3
 /** Half width of what is drawn of it, and by how much it is drawn beyond the ends of a piece, where the next begins [pixels]. */
 const HALF_WIDTH = 3 * WIDTH
-const BEYOND = 1
+const BEYOND = 2
 /** Greatest luminance over the channel's colour that half floats keep. */
 const GREATEST = 3e4
 /** Part of the distance before a channel over which clouds begin to hide it. Greater: white lines within clouds (*Storm at night*). */

@@ -10,7 +10,7 @@ import type { Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
 import { marchedPixel } from '../march/tsl/marchedPixel'
 import { CORNERS } from '../temporal/tsl/cells'
-import { encodeDistance, unpack } from '../temporal/tsl/packing'
+import { unpack } from '../temporal/tsl/packing'
 import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
 import {
   loop,
@@ -51,13 +51,19 @@ const LEAST_OPACITY = 1e-3
 /**
  * Light on faces of clouds that a flash lights from outside: of those turned away, and of thin ones [–]. 0: black (*Storm at night*).
  */
-const TURNED_AWAY = 0.04
+const TURNED_AWAY = 0.1
 const UNFACED = 1 / 3
 
-/** Distance between marched pixels from which a cloud's face is found, of which nine are taken, in marched ones. 1: grain; greater: heads without form (*Storm at night*). */
-const FACE_STEP = 2
-/** Difference of log₂ of distances at which a neighbour counts half. Greater: heads shine over others' edges; smaller: grain. */
+/** Share of the depth that one looks into clouds in which form is lost. Greater: heads without form; smaller: grain (*Storm at night*). */
+const BLURRED = 0.25
+/** Difference of log₂ of distances at which light or place of a neighbour counts half, of clouds and of what was drawn. Greater: heads and ridges shine over others' edges; smaller: grain. */
 const LIKE = 0.03
+const AIR_LIKE = 0.3
+/** Weight of dark air where neighbours are at other distances. 0: bright lines around what stands before the sky. */
+const DARK = 0.01
+
+/** Edge of a pixel of the light, in the picture's. Greater: blurred edges and channels. */
+const LIGHT_PIXEL = 2
 
 /**
  * Radiance of a cloud's surface that is lit from inside, over that of an even one [–]: (1 + 1.5 μ)/2, of which the mean over the light that leaves is 1.
@@ -117,8 +123,8 @@ export class LightningPasses {
   }
 
   /**
-   * Clouds of one pixel of each block: red and blue of their light and of that of the air before them, for `STORED_POWER`; log₂ of their distance; and 1,
-   * or 0 where there are none.
+   * One pixel of each block: red and blue of the light of its clouds and of the air before them, for `STORED_POWER`; 1, or 0 where there are no clouds; and light of the air
+   * before what was drawn.
    */
   #clouded(): Vec4 {
     const { passes, field } = this.#clouds
@@ -127,10 +133,12 @@ export class LightningPasses {
     return Fn(() => {
       const { at } = marchedPixel(viewRays)
       const here = uv() as unknown as Vec2
-      const light = vec4(0).toVar() as Variable<Vec4>
+      const ray = viewRayAt(viewRays, at)
+      const { direction, directionView } = ray
+      const end = viewRayEnd(viewRays, at, ray).min(LONGEST_HAZE).toConst()
+      const light = vec3(0).toVar() as Variable<Vec3>
       const seen = this.#seenAt(here)
       If(seen.x.greaterThan(LEAST_OPACITY), () => {
-        const { direction, directionView } = viewRayAt(viewRays, at)
         const { distance, normal, known } = this.#faceAt(here, at, direction, seen)
         const place = direction.mul(distance).toConst() as Vec3
         const line = this.#lineLight(place)
@@ -147,9 +155,9 @@ export class LightningPasses {
         const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
         const before = this.#hazeLight(direction, distance.min(LONGEST_HAZE).toConst())
         const radiance = transmittance.xz.mul(lit).mul(STORED_POWER / (4 * Math.PI ** 2))
-        light.assign(vec4(radiance.add(before), encodeDistance(distance), 1))
+        light.assign(vec3(radiance.add(before), 1))
       })
-      return light
+      return vec4(light, this.#hazeLight(direction, end))
     })()
   }
 
@@ -188,7 +196,7 @@ export class LightningPasses {
       const shift = vec2(index.sub(row.mul(3)), row)
         .sub(1)
         .toConst() as Vec2
-      const there = this.#seenAt(here.add(shift.mul(FACE_STEP).div(marchedSize)).toConst())
+      const there = this.#seenAt(here.add(shift.div(marchedSize)).toConst())
       const rise = there.y.sub(seen.y).toConst() as Float
       const apart = rise.div(seen.y.mul(LIKE * Math.LN2)).toConst()
       const weight = there.x.div(apart.mul(apart).add(1)).toConst() as Float
@@ -203,53 +211,63 @@ export class LightningPasses {
       .div(squares.sub(middle.mul(weights.yz)).max(1e-3))
       .toConst() as Vec2
     const width = float(0).toVar() as Variable<Float>
+    const blurred = seen.z.mul(BLURRED).toConst() as Float
     const normal = direction.negate().toVar() as Variable<Vec3>
     for (const [axis, slope] of [
       [vec2(1, 0), slopes.x],
       [vec2(0, 1), slopes.y]
     ] as const) {
-      const step = axis.mul(FACE_STEP).mul(block).div(size)
+      const step = axis.mul(block).div(size)
       const next = viewRayAt(viewRays, at.add(step).toConst()).direction
       const aside = next.sub(direction.mul(next.dot(direction))).toConst() as Vec3
       width.assign(aside.length().mul(seen.y))
-      normal.addAssign(aside.normalize().mul(slope.div(width.add(seen.z))))
+      normal.addAssign(aside.normalize().mul(slope.div(width.add(blurred))))
     }
     const distance = seen.y.add(mean).sub(slopes.dot(middle)).max(1).toConst() as Float
-    const known = width.div(width.add(seen.z)).toConst() as Float
+    const known = width.div(width.add(blurred)).toConst() as Float
     return { distance, normal: normal.normalize().toConst(), known }
   }
 
   /**
-   * Light of a pixel, for `STORED_POWER`: of the marched pixels' clouds around that are as far as its own, and of its air.
+   * Light of a pixel, for `STORED_POWER`, from the marched ones around that are as far: of its clouds, and of its air.
    */
   #lit(): Vec4 {
-    const { viewRays, accumulated } = this.#clouds.passes
+    const { viewRays, accumulated, seen } = this.#clouds.passes
     const { marchedSize } = viewRays.frame
     return Fn(() => {
       const here = uv() as unknown as Vec2
       const transmittance = accumulated.light.sample(here).level(0).w.toConst() as Float
-      const ray = viewRayAt(viewRays, here)
-      const end = viewRayEnd(viewRays, here, ray).min(LONGEST_HAZE).toConst() as Float
-      const air = this.#hazeLight(ray.direction, end)
-      const light = vec2(air).toVar() as Variable<Vec2>
-      If(transmittance.lessThan(1), () => {
-        const place = here.mul(this.#scale).add(this.#offset).mul(marchedSize).sub(0.5).toConst()
-        const first = place.floor().toConst() as Vec2
-        const part = place.sub(first).toConst() as Vec2
-        const own = unpack(accumulated.distances.sample(here).level(0)).x.toConst() as Float
-        // Some where none of them sees a cloud.
-        const sum = vec3(air, air, 1).mul(1e-6).toVar() as Variable<Vec3>
-        for (const [x, y] of CORNERS) {
-          const texel = first.add(vec2(x + 0.5, y + 0.5)).div(marchedSize)
-          const found = this.#glow.sample(texel.toConst()).level(0).toConst() as Vec4
-          const weights = mix(part.oneMinus(), part, vec2(x, y)).toConst() as Vec2
-          const apart = found.z.sub(own).div(LIKE).toConst() as Float
-          const like = weights.x.mul(weights.y).add(1e-3).div(apart.mul(apart).add(1)).mul(found.w)
-          sum.addAssign(vec3(found.xy, 1).mul(like))
-        }
-        light.assign(mix(sum.xy.div(sum.z), light, transmittance))
-      })
-      return vec4(channelColor(light), 1)
+      const own = unpack(accumulated.distances.sample(here).level(0))
+      const place = here.mul(this.#scale).add(this.#offset).mul(marchedSize).sub(0.5).toConst()
+      const first = place.floor().toConst() as Vec2
+      const part = place.sub(first).toConst() as Vec2
+      const clouds = vec3(0).toVar() as Variable<Vec3>
+      const airs = vec2(0, DARK).toVar() as Variable<Vec2>
+      for (const [x, y] of CORNERS) {
+        const texel = first
+          .add(vec2(x + 0.5, y + 0.5))
+          .div(marchedSize)
+          .toConst()
+        const found = this.#glow.sample(texel).level(0).toConst() as Vec4
+        const weights = mix(part.oneMinus(), part, vec2(x, y)).toConst() as Vec2
+        const apart = seen.ray
+          .sample(texel)
+          .level(0)
+          .xy.sub(own.xy)
+          .div(vec2(LIKE, AIR_LIKE))
+          .toConst() as Vec2
+        const like = weights.x
+          .mul(weights.y)
+          .add(1e-3)
+          .div(apart.mul(apart).add(1))
+          .toConst() as Vec2
+        clouds.addAssign(vec3(found.xy, 1).mul(like.x.mul(found.z)))
+        airs.addAssign(vec2(found.w, 1).mul(like.y))
+      }
+      const air = airs.x.div(airs.y).toConst() as Float
+      // Some where none of them sees a cloud.
+      const all = clouds.add(vec3(air, air, 1).mul(1e-6)).toConst() as Vec3
+      return vec4(channelColor(mix(all.xy.div(all.z), vec2(air), transmittance).toConst()), 1)
     })()
   }
 
@@ -318,7 +336,8 @@ export class LightningPasses {
       .sub(jitter.value)
       .divide(blocks)
     this.#glowTarget.setSize(marched.x, marched.y)
-    this.#target.setSize(size.value.x, size.value.y)
+    const { x, y } = size.value
+    this.#target.setSize(Math.ceil(x / LIGHT_PIXEL), Math.ceil(y / LIGHT_PIXEL))
     this.#glowPass.render(renderer, this.#glowTarget)
     this.#pass.render(renderer, this.#target)
     this.#bolt.render(renderer, view, _offset, channel, power.branches / power.all, this.#target)
