@@ -21,6 +21,7 @@ export const flashes = [
     altitude: 60,
     sun: new Date('2026-06-14T14:00:00Z'),
     view: { azimuth: 20, pitch: 14 },
+    compensation: -0.7,
     land: 'hills'
   },
   {
@@ -28,10 +29,11 @@ export const flashes = [
     about: 'a tower lit from inside, from an airliner',
     clouds: { preset: 'cumulonimbus' },
     place: { longitude: 139.571, latitude: 35.995 },
-    lightning: { kind: 'cloud', azimuth: 1, distance: 17_500 },
+    lightning: { kind: 'cloud', azimuth: -4, distance: 19_000 },
     altitude: 7000,
     sun: new Date('2026-06-14T14:00:00Z'),
     view: { azimuth: 0, pitch: -4 },
+    compensation: -1,
     land: 'planet'
   },
   {

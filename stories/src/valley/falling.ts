@@ -15,7 +15,7 @@ import type { Weather } from './weather'
 /** Seconds of drying and wetting in one second on the clock. */
 const HASTE = 60
 /** Drops and flakes of a class of size that are drawn, at most: farther off each stands for more. */
-const PARTICLES = { rain: 8192, snow: 20_480 }
+const PARTICLES = { rain: 16_384, snow: 20_480 }
 /** Water of rain, and of snow, that lies where weather was before the scene began [mm]. */
 const FALLEN = { rain: 0.5, snow: 12 }
 
@@ -36,7 +36,15 @@ export class ValleyPrecipitation {
     atmosphere: Atmosphere,
     lights: readonly Light[]
   ): Node {
-    const options = { lights, depth, depthCamera: camera, rate: 0, wind: { east: 3, north: 1 } }
+    const options = {
+      lights,
+      depth,
+      depthCamera: camera,
+      rate: 0,
+      wind: { east: 3, north: 1 },
+      shutter: 1 / 60,
+      aperture: 0.003
+    }
     this.#falling = [
       rainfall(atmosphere, { ...options, maxParticles: PARTICLES.rain }),
       snowfall(atmosphere, { ...options, maxParticles: PARTICLES.snow })

@@ -1,6 +1,6 @@
-import { aerialPerspectiveTo, tableTarget, type AtmosphereView } from '@welkin/atmosphere'
+import { aerialPerspectiveTo, type AtmosphereView } from '@welkin/atmosphere'
+import type { Vector3 } from 'three'
 import {
-  Box2,
   BufferGeometry,
   CustomBlending,
   DoubleSide,
@@ -9,43 +9,32 @@ import {
   Matrix3,
   Mesh,
   OneFactor,
-  RGFormat,
   Scene,
-  Vector2,
-  Vector3,
-  Vector4
+  type RenderTarget
 } from 'three'
-import { Fn, Discard, If, attribute, screenUV, texture, varying, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, Discard, If, attribute, screenUV, varying, vec2, vec3, vec4 } from 'three/tsl'
 import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
 import { select } from '../select'
 import type { CloudsNode } from '../march/CloudsNode'
 import { isDrawnBefore } from '../march/tsl/viewRay'
-import type { Float, LevelTexture, Mat3, Mat4, Variable, Vec2, Vec3, Vec4 } from '../tsl-types'
-import { matrix3, matrix4, number, vector3, vector4 } from '../uniforms'
-import type { PlacedChannel } from './channel'
+import type { Float, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
+import { matrix3, matrix4, number, vector3 } from '../uniforms'
+import { STORED_POWER, type PlacedChannel } from './channel'
 import { channelColor } from './tsl/channelColor'
 
-/** Deviation of a channel's width in the picture [pixels]. Smaller: steps at its edges. */
-const WIDTH = 0.8
+/** Deviation of a channel's width in the picture [pixels], whose light has pixels of two. Smaller: steps at its edges. */
+const WIDTH = 1.3
 /** Half width of what is drawn of it, and by how much it is drawn beyond the ends of a piece, where the next begins [pixels]. */
 const HALF_WIDTH = 3 * WIDTH
-const BEYOND = 1
+const BEYOND = 2
 /** Greatest luminance over the channel's colour that half floats keep. */
 const GREATEST = 3e4
-/** Part of the distance over which clouds hide a channel. */
-const HIDING = 0.02
+/** Part of the distance before a channel over which clouds begin to hide it. Greater: white lines within clouds (*Storm at night*). */
+const HIDING = 0.005
 /** Share of its light that clouds must let through: less is none, or it shines through opaque ones. */
 const LEAST_PASSING = 0.01
 
-/** Steps in which the size of what is drawn grows [pixels]. */
-const STEP = 64
-
 const _toView = new Matrix3()
-const _point = new Vector3()
-const _clip = new Vector4()
-const _corner = new Vector2()
-const _box = new Box2()
-const _picture = new Box2(new Vector2())
 
 /** Quads of all pieces: which corner a vertex is, for its position, and where its piece begins and ends. */
 function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
@@ -77,9 +66,6 @@ function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
 /** A channel of lightning as thin bright lines, hidden by what was drawn and dimmed by clouds and air before it. */
 export class BoltPass {
   readonly #clouds: CloudsNode
-  /** Red and blue alone: to clear a texel costs more than to draw the few that a channel has. */
-  readonly #target = tableTarget('Welkin.LightningChannel', 1, 1)
-  readonly #texture: LevelTexture<Vec2>
   readonly #scene = new Scene()
   readonly #material: NodeMaterial
   readonly #mesh: Mesh
@@ -89,17 +75,12 @@ export class BoltPass {
   /** The channel's place in its own frame, from the camera [m]. */
   readonly #place = vector3()
   readonly #projection = matrix4()
-  /** Scale and offset from places in the picture to those in its part that is drawn, y down. */
-  readonly #crop = vector4()
-  #channel: PlacedChannel | null = null
-  /** Luminous intensity of a metre of the stem, and that of branches, times `luminanceScale` [cd/m]. */
+  /** Luminous intensity of a metre of the stem, and that of branches, for `STORED_POWER` [cd/m]. */
   readonly #stemLight = number()
   readonly #branchLight = number()
 
   constructor(clouds: CloudsNode) {
     this.#clouds = clouds
-    this.#target.texture.format = RGFormat
-    this.#texture = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
     this.#material = this.#makeMaterial()
     this.#mesh = new Mesh(new BufferGeometry(), this.#material)
     this.#mesh.frustumCulled = false
@@ -108,8 +89,6 @@ export class BoltPass {
 
   /** Takes a channel's geometry. */
   set channel(channel: PlacedChannel) {
-    this.#channel = channel
-    this.#target.setSize(1, 1)
     this.#mesh.geometry.dispose()
     this.#mesh.geometry = quadsOf(channel)
   }
@@ -136,7 +115,7 @@ export class BoltPass {
     const passingAt = (pixel: Vec2, distance: Float): Float => {
       const at = pixel.div(frame.size).mul(vec2(1, -1)).add(0.5).clamp(0, 1).toConst() as Vec2
       const distances = seen.distances.sample(at).level(0)
-      const before = vec4(distance).sub(distances).div(distance.mul(HIDING)).add(0.5).clamp(0, 1)
+      const before = vec4(distance).sub(distances).div(distance.mul(HIDING)).add(1).clamp(0, 1)
       return seen.shares
         .sample(at)
         .level(0)
@@ -186,17 +165,14 @@ export class BoltPass {
       air.assign(transmittance.mul(select(isFirst, passing.x, passing.y)))
       // In front of the camera and not in clouds, or else nowhere.
       const isSeen = a.w.min(b.w).greaterThan(0).and(passing.x.max(passing.y).greaterThan(0))
-      const inPicture = pixel.div(frame.size).mul(vec2(1, -1)).add(0.5)
-      const drawn = inPicture.mul(this.#crop.xy).add(this.#crop.zw).sub(0.5)
-      return select(isSeen, vec4(drawn.mul(vec2(2, -2)), 0.5, 1), vec4(2, 2, 2, 1))
+      return select(isSeen, vec4(pixel.div(frame.size).mul(2), 0.5, 1), vec4(2, 2, 2, 1))
     })()
     material.fragmentNode = Fn(() => {
-      const here = vec2(screenUV).sub(this.#crop.zw).div(this.#crop.xy).toConst() as Vec2
       const beside = place.x.sub(place.x.clamp(0, place.z)).toConst() as Float
       const square = beside.mul(beside).add(place.y.mul(place.y)).toConst() as Float
       const distance = place.w.toConst() as Float
       // The channel is above the ground.
-      If(isDrawnBefore(viewRays, here, brightness.z.mul(0.999)), () => {
+      If(isDrawnBefore(viewRays, vec2(screenUV), brightness.z.mul(0.999)), () => {
         Discard()
       })
       const width = distance.mul(field.pixelAngle).mul(WIDTH * Math.sqrt(2 * Math.PI))
@@ -207,35 +183,24 @@ export class BoltPass {
         .mul(perMetre)
         .mul(brightness.x)
         .div(width)
-      return vec4(air.xz.mul(luminance).min(GREATEST), 0, 1)
+      return vec4(channelColor(air.xz.mul(luminance).min(GREATEST)), 1)
     })()
     return material
   }
 
-  /** Light of the channel [luminance × `luminanceScale`]. To be called inside of a shader function. @param at - In the picture, y down. */
-  sample(at: Vec2): Vec3 {
-    const drawn = at.mul(this.#crop.xy).add(this.#crop.zw).toConst() as Vec2
-    const light = vec3(0).toVar() as Variable<Vec3>
-    If(drawn.clamp(0, 1).equal(drawn).all(), () => {
-      const { xy } = this.#texture.sample(drawn).level(0).toConst() as Vec4
-      If(xy.x.greaterThan(0), () => {
-        light.assign(channelColor(xy))
-      })
-    })
-    return light
-  }
-
   /**
-   * Draws it.
+   * Draws it over the light of a flash.
    *
    * @param offset - Its place from the camera, in the mapped space [m].
+   * @param branches - Light of branches over that which they can have, in [0, 1].
    */
   render(
     renderer: Renderer,
     { viewToMapped }: AtmosphereView,
     offset: Vector3,
     { axes, brightLength }: PlacedChannel,
-    power: { readonly all: number; readonly branches: number }
+    branches: number,
+    target: RenderTarget
   ): void {
     const [east, north, up] = axes
     this.#place.value.set(offset.dot(east), offset.dot(north), offset.dot(up))
@@ -247,55 +212,17 @@ export class BoltPass {
       .premultiply(_toView)
     const { frame } = this.#clouds.passes.viewRays
     frame.projectionOf(this.#clouds.camera, this.#projection.value)
-    const perLength = 1 / (4 * Math.PI * brightLength)
-    this.#stemLight.value = power.all * perLength
-    this.#branchLight.value = power.branches * perLength
-    if (!this.#cropTo(frame.size.value)) return
+    this.#stemLight.value = STORED_POWER / (4 * Math.PI * brightLength)
+    this.#branchLight.value = this.#stemLight.value * branches
     const state = RendererUtils.resetRendererState(renderer, {} as never)
-    renderer.setRenderTarget(this.#target)
-    renderer.setClearColor(0x000000, 0)
-    renderer.autoClear = true
+    renderer.setRenderTarget(target)
+    renderer.autoClear = false
     renderer.render(this.#scene, this.#clouds.camera)
     RendererUtils.restoreRendererState(renderer, state)
   }
 
-  /** Crops what is drawn to the channel's surroundings in the picture. @returns False if it is out of the picture. */
-  #cropTo({ x: width, y: height }: Vector2): boolean {
-    const box = _box.makeEmpty()
-    for (const { from, to } of this.#channel?.pieces ?? [])
-      for (const end of [from, to]) {
-        _point
-          .set(...end)
-          .applyMatrix3(this.#toView.value)
-          .add(this.#placeView.value)
-        const { x, y, w } = _clip.set(..._point.toArray(), 1).applyMatrix4(this.#projection.value)
-        if (w > 0) box.expandByPoint(_corner.set(1 + x / w, 1 - y / w))
-        // What is behind the camera is anywhere in the picture.
-        else for (const edge of [0, 2]) box.expandByPoint(_corner.setScalar(edge))
-      }
-    const { min, max } = box
-    const all = _corner.set(width, height).multiplyScalar(0.5)
-    min.multiply(all).subScalar(HALF_WIDTH)
-    max.multiply(all).addScalar(HALF_WIDTH)
-    _picture.max.set(width, height)
-    this.#crop.value.set(0, 0, 2, 2)
-    if (box.intersect(_picture).isEmpty()) return false
-    min.floor()
-    // In steps, and growing alone: a texture of a new size is a new texture.
-    const grown = (wanted: number, before: number, most: number): number =>
-      Math.min(Math.max(Math.ceil(wanted / STEP) * STEP, before), most)
-    const across = grown(max.x - min.x, this.#target.width, width)
-    const down = grown(max.y - min.y, this.#target.height, height)
-    this.#target.setSize(across, down)
-    const left = Math.min(min.x, width - across)
-    const top = Math.min(min.y, height - down)
-    this.#crop.value.set(width / across, height / down, -left / across, -top / down)
-    return true
-  }
-
-  /** Frees its render target and geometry. */
+  /** Frees its geometry. */
   dispose(): void {
-    this.#target.dispose()
     this.#mesh.geometry.dispose()
     this.#material.dispose()
   }

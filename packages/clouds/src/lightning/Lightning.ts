@@ -6,7 +6,7 @@ import type { NodeFrame, Renderer } from 'three/webgpu'
 import { checkClouds } from '../check'
 import { viewpointMapped } from '../density/CloudField'
 import type { CloudsNode } from '../march/CloudsNode'
-import type { Float, Vec3 } from '../tsl-types'
+import type { Vec3 } from '../tsl-types'
 import { CHANNEL_COLOR, fromCamera, lightningChannel } from './channel'
 import { flashCurve, lightBetween } from './flashCurve'
 import { seeded, type Random } from './random'
@@ -47,8 +47,8 @@ const _toView = new Matrix3()
  * storm.strike()                                   // one more, now
  * ```
  *
- * Clouds glow from inside, smooth and brighter towards the channel; the air glows as well, and where no cloud hides it a branched channel
- * is seen. Nothing is drawn between flashes.
+ * Clouds glow from inside, brighter towards the channel and darker at the limbs of their heads, and light others from outside; the air glows as well,
+ * and where no cloud hides it a branched channel is seen. Nothing is drawn between flashes.
  *
  * Flashes may harm people with photosensitive epilepsy: ask before you switch them on. `limit`, on by default, lets three a second through and caps
  * their brightness.
@@ -210,8 +210,8 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
   }
 
   /** Adds its light to a colour: called by the clouds' node. */
-  dim(color: Vec3, transmittance: Float): Vec3 {
-    return this.#passes.addTo(color, transmittance)
+  dim(color: Vec3): Vec3 {
+    return this.#passes.addTo(color)
   }
 
   /** Frees its textures, and takes it from the clouds. */

@@ -5,13 +5,12 @@ import {
   type AtmosphereView
 } from '@welkin/atmosphere'
 import { Vector3, Vector4 } from 'three'
-import { Fn, If, float, int, mix, texture, uv, vec2, vec4 } from 'three/tsl'
+import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
-import { select } from '../select'
 import type { CloudsNode } from '../march/CloudsNode'
 import { marchedPixel } from '../march/tsl/marchedPixel'
 import { CORNERS } from '../temporal/tsl/cells'
-import { encodeDistance, FARTHEST } from '../temporal/tsl/packing'
+import { unpack } from '../temporal/tsl/packing'
 import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
 import {
   loop,
@@ -25,7 +24,13 @@ import {
 } from '../tsl-types'
 import { number, vector2 } from '../uniforms'
 import { BoltPass } from './BoltPass'
-import { fromCamera, STEM_POINTS, type PlacedChannel, type StormColumn } from './channel'
+import {
+  fromCamera,
+  STEM_POINTS,
+  STORED_POWER,
+  type PlacedChannel,
+  type StormColumn
+} from './channel'
 import { StormDensity } from './StormDensity'
 import { channelColor } from './tsl/channelColor'
 import { meanInverseSquare } from './tsl/lineLight'
@@ -40,31 +45,25 @@ const HAZE_SOFTNESS = 25
 /** Longest path through lit haze [m]. */
 const LONGEST_HAZE = 60_000
 
-/** Difference of a pixel's nearness to the glow's about it, over the latter, above which it finds the light of its own air. Greater: air shines over ridges. */
-const UNLIKE = 0.03
-
-/**
- * Difference of the nearness at a glow pixel's four corners to four times its own, over its own, from which on an edge is there: pixels find the light of their own
- * air. Greater: bright lines below ridges.
- */
-const EDGE = 0.3
-
-/** Edge of a pixel of the glow, in marched ones. Greater: no relief in lit clouds (*Storm at night*). */
-const GLOW_PIXEL = 2
-
 /** Opacity of clouds below which their light is not seen [–]. */
 const LEAST_OPACITY = 1e-3
 
-/** Opacity of a ray's clouds above which they have a face [–]. */
-const FACED = 0.1
-/** Light of the night's sky, as it were, on faces of clouds that are turned away from a flash [–]. 0: black (*Storm at night*). */
-const TURNED_AWAY = 0.15
+/**
+ * Light on faces of clouds that a flash lights from outside: of those turned away, and of thin ones [–]. 0: black (*Storm at night*).
+ */
+const TURNED_AWAY = 0.1
+const UNFACED = 1 / 3
 
-/** Power for which half floats hold light: 1e-9 of it is left 2 km from the channel [lm]. */
-const STORED_POWER = 1e9
+/** Share of the depth that one looks into clouds in which form is lost. Greater: heads without form; smaller: grain (*Storm at night*). */
+const BLURRED = 0.25
+/** Difference of log₂ of distances at which light or place of a neighbour counts half, of clouds and of what was drawn. Greater: heads and ridges shine over others' edges; smaller: grain. */
+const LIKE = 0.03
+const AIR_LIKE = 0.3
+/** Weight of dark air where neighbours are at other distances. 0: bright lines around what stands before the sky. */
+const DARK = 0.01
 
-/** Slope of the clouds that stands for none. */
-const STEEPEST = 1e6
+/** Edge of a pixel of the light, in the picture's. Greater: blurred edges and channels. */
+const LIGHT_PIXEL = 2
 
 /**
  * Radiance of a cloud's surface that is lit from inside, over that of an even one [–]: (1 + 1.5 μ)/2, of which the mean over the light that leaves is 1.
@@ -94,27 +93,26 @@ export class LightningPasses {
   /** Scale and offset from places in the picture to those among marched pixels: quotients of uniforms cost each pixel a division. */
   readonly #scale = vector2()
   readonly #offset = vector2()
-  /** Depth where nothing was drawn. */
-  readonly #farDepth = number()
   /** Points of the stem from the camera, in the mapped space [m], and scattering by air there [1/m]. */
   readonly #stem: readonly Vector4[] = Array.from({ length: STEM_POINTS }, () => new Vector4())
   readonly #stemArray = vec4Array(this.#stem as Vector4[])
-  readonly #target = tableTarget('Welkin.LightningGlow', 1, 1)
+  /** Light of the marched pixels' clouds, and of all pixels. */
+  readonly #glowTarget = tableTarget('Welkin.LightningGlow', 1, 1)
   readonly #glow: LevelTexture<Vec2>
+  readonly #glowPass: FragmentPass
+  readonly #target = tableTarget('Welkin.Lightning', 1, 1)
+  readonly #light: LevelTexture<Vec2>
   readonly #pass: FragmentPass
-  readonly #smoothTarget = tableTarget('Welkin.LightningSmoothGlow', 1, 1)
-  readonly #smooth: LevelTexture<Vec2>
-  readonly #smoothPass: FragmentPass
   readonly #bolt: BoltPass
   readonly #density: StormDensity
 
   constructor(clouds: CloudsNode) {
     this.#clouds = clouds
-    this.#glow = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
+    this.#glow = texture(this.#glowTarget.texture) as unknown as LevelTexture<Vec2>
+    this.#light = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
     this.#density = new StormDensity(clouds.field)
-    this.#pass = new FragmentPass('Welkin.LightningGlow', this.#light())
-    this.#smooth = texture(this.#smoothTarget.texture) as unknown as LevelTexture<Vec2>
-    this.#smoothPass = new FragmentPass('Welkin.LightningSmoothGlow', this.#smoothed())
+    this.#glowPass = new FragmentPass('Welkin.LightningGlow', this.#clouded())
+    this.#pass = new FragmentPass('Welkin.Lightning', this.#lit())
     this.#bolt = new BoltPass(clouds)
   }
 
@@ -125,27 +123,24 @@ export class LightningPasses {
   }
 
   /**
-   * Clouds of one pixel of each block: their light, red and blue, for `STORED_POWER`, times their opacity; that opacity; and
-   * log₂ of their distance, times it.
+   * One pixel of each block: red and blue of the light of its clouds and of the air before them, for `STORED_POWER`; 1, or 0 where there are no clouds; and light of the air
+   * before what was drawn.
    */
-  #light(): Vec4 {
+  #clouded(): Vec4 {
     const { passes, field } = this.#clouds
-    const { seen, viewRays } = passes
+    const { viewRays } = passes
     const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
     return Fn(() => {
-      const { block, at } = marchedPixel(viewRays)
-      const here = block.add(0.5).div(viewRays.frame.marchedSize).toConst() as Vec2
+      const { at } = marchedPixel(viewRays)
+      const here = uv() as unknown as Vec2
       const ray = viewRayAt(viewRays, at)
-      const distances = seen.distances.sample(here).level(0).toConst()
-      const shares = seen.shares.sample(here).level(0).toConst()
-      const opacity = shares.dot(vec4(1)).toConst() as Float
-      const light = vec4(0).toVar() as Variable<Vec4>
-      If(opacity.greaterThan(LEAST_OPACITY), () => {
-        const mean = shares.dot(distances).div(opacity).toConst() as Float
-        // How deep one looks into clouds: what is finer has no face.
-        const depth = distances.sub(mean).abs().dot(shares).div(opacity).toConst()
-        const { normal, width } = this.#faceAt(here, at, ray.direction, mean, depth)
-        const place = ray.direction.mul(mean).toConst() as Vec3
+      const { direction, directionView } = ray
+      const end = viewRayEnd(viewRays, at, ray).min(LONGEST_HAZE).toConst()
+      const light = vec3(0).toVar() as Variable<Vec3>
+      const seen = this.#seenAt(here)
+      If(seen.x.greaterThan(LEAST_OPACITY), () => {
+        const { distance, normal, known } = this.#faceAt(here, at, direction, seen)
+        const place = direction.mul(distance).toConst() as Vec3
         const line = this.#lineLight(place)
         const out = this.#density.lightOut(place)
         const turned = normal.dot(line.xyz).div(line.w).add(1).div(2).toConst() as Float
@@ -153,85 +148,126 @@ export class LightningPasses {
           .mul(turned)
           .mul(1 - TURNED_AWAY)
           .add(TURNED_AWAY)
-        const facing = normal.dot(ray.direction).negate()
-        const face = mix(1, mix(limbDarkening(facing), outside, out.y), width.div(width.add(depth)))
+        const inside = limbDarkening(normal.dot(direction).negate())
+        const face = mix(mix(1, UNFACED, out.y), mix(inside, outside, out.y), known)
         const lit = line.w.mul(out.x).mul(face)
-        const displacement = ray.directionView.mul(mean).toConst()
+        const displacement = directionView.mul(distance).toConst()
         const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
-        const radiance = lit.mul(opacity).mul(STORED_POWER / (4 * Math.PI ** 2))
-        const distance = encodeDistance(mean).mul(opacity)
-        light.assign(vec4(transmittance.xz.mul(radiance), opacity, distance))
+        const before = this.#hazeLight(direction, distance.min(LONGEST_HAZE).toConst())
+        const radiance = transmittance.xz.mul(lit).mul(STORED_POWER / (4 * Math.PI ** 2))
+        light.assign(vec3(radiance.add(before), 1))
       })
-      return light
+      return vec4(light, this.#hazeLight(direction, end))
     })()
   }
 
+  /** Opacity of the clouds of a marched pixel, their mean distance, and the mean deviation from it [m]. @param here - In its textures. */
+  #seenAt(here: Vec2): Vec3 {
+    const { seen } = this.#clouds.passes
+    const distances = seen.distances.sample(here).level(0).toConst() as Vec4
+    const shares = seen.shares.sample(here).level(0).toConst() as Vec4
+    const opacity = shares.dot(vec4(1)).toConst() as Float
+    const mean = shares.dot(distances).div(opacity.max(1e-6)).toConst() as Float
+    const depth = distances.sub(mean).abs().dot(shares).div(opacity.max(1e-6))
+    return vec3(opacity, mean, depth).toConst()
+  }
+
   /**
-   * Normal of what is seen of clouds, and the width over which it is known [m]: from distances of the marched pixels around, on each axis the nearer
-   * one's. To be called inside of a shader function.
+   * Face of a marched pixel's clouds: its distance [m] and normal, and from 0 to 1 how much of one they have. A plane through nine pixels: single ones have
+   * the march's grain. To be called inside of a shader function.
    *
    * @param here - Place of the marched pixel in its textures, and `at` in the picture.
-   * @param mean - The pixel's mean distance, and `depth` its mean deviation [m].
+   * @param seen - `#seenAt` there.
    */
   #faceAt(
     here: Vec2,
     at: Vec2,
     direction: Vec3,
-    mean: Float,
-    depth: Float
-  ): { normal: Vec3; width: Float } {
-    const { seen, viewRays } = this.#clouds.passes
+    seen: Vec3
+  ): { distance: Float; normal: Vec3; known: Float } {
+    const { viewRays } = this.#clouds.passes
     const { marchedSize, block, size } = viewRays.frame
+    // Sums of weights, of these by place and by its square, of distances from the pixel's, and of these by place.
+    const weights = vec3(0).toVar() as Variable<Vec3>
+    const squares = vec2(0).toVar() as Variable<Vec2>
+    const rises = vec3(0).toVar() as Variable<Vec3>
+    loop('faceTap', 9, index => {
+      const row = index.div(int(3)).toConst()
+      const shift = vec2(index.sub(row.mul(3)), row)
+        .sub(1)
+        .toConst() as Vec2
+      const there = this.#seenAt(here.add(shift.div(marchedSize)).toConst())
+      const rise = there.y.sub(seen.y).toConst() as Float
+      const apart = rise.div(seen.y.mul(LIKE * Math.LN2)).toConst()
+      const weight = there.x.div(apart.mul(apart).add(1)).toConst() as Float
+      weights.addAssign(vec3(1, shift).mul(weight))
+      squares.addAssign(shift.mul(shift).mul(weight))
+      rises.addAssign(vec3(1, shift).mul(rise.mul(weight)))
+    })
+    const middle = weights.yz.div(weights.x).toConst() as Vec2
+    const mean = rises.x.div(weights.x).toConst() as Float
+    const slopes = rises.yz
+      .sub(middle.mul(rises.x))
+      .div(squares.sub(middle.mul(weights.yz)).max(1e-3))
+      .toConst() as Vec2
     const width = float(0).toVar() as Variable<Float>
+    const blurred = seen.z.mul(BLURRED).toConst() as Float
     const normal = direction.negate().toVar() as Variable<Vec3>
-    for (const axis of [vec2(1, 0), vec2(0, 1)]) {
-      const step = axis.mul(GLOW_PIXEL)
-      const next = viewRayAt(viewRays, at.add(step.mul(block).div(size)).toConst()).direction
+    for (const [axis, slope] of [
+      [vec2(1, 0), slopes.x],
+      [vec2(0, 1), slopes.y]
+    ] as const) {
+      const step = axis.mul(block).div(size)
+      const next = viewRayAt(viewRays, at.add(step).toConst()).direction
       const aside = next.sub(direction.mul(next.dot(direction))).toConst() as Vec3
-      width.assign(aside.length().mul(mean))
-      const [before, after] = [-1, 1].map(sign => {
-        const place = here.add(step.mul(sign).div(marchedSize)).toConst()
-        const shares = seen.shares.sample(place).level(0).toConst() as Vec4
-        const opacity = shares.dot(vec4(1)).toConst() as Float
-        const distance = shares.dot(seen.distances.sample(place).level(0)).div(opacity.max(1e-3))
-        const rise = distance.sub(mean).mul(sign).div(width.add(depth))
-        return select(opacity.greaterThan(FACED), rise, STEEPEST).toConst()
-      })
-      const slope = select(before.abs().lessThan(after.abs()), before, after)
-      normal.addAssign(aside.normalize().mul(select(slope.lessThan(STEEPEST), slope, 0)))
+      width.assign(aside.length().mul(seen.y))
+      normal.addAssign(aside.normalize().mul(slope.div(width.add(blurred))))
     }
-    return { normal: normal.normalize().toConst(), width }
+    const distance = seen.y.add(mean).sub(slopes.dot(middle)).max(1).toConst() as Float
+    const known = width.div(width.add(blurred)).toConst() as Float
+    return { distance, normal: normal.normalize().toConst(), known }
   }
 
   /**
-   * Glow by a tent: marched pixels are one of each block, and it hides which. Light of opaque clouds and of the air before them, red and blue; of the
-   * air before what was drawn; and its nearness, −1 beside edges, and on ground that was not drawn.
+   * Light of a pixel, for `STORED_POWER`, from the marched ones around that are as far: of its clouds, and of its air.
    */
-  #smoothed(): Vec4 {
-    const { viewRays } = this.#clouds.passes
+  #lit(): Vec4 {
+    const { viewRays, accumulated, seen } = this.#clouds.passes
+    const { marchedSize } = viewRays.frame
     return Fn(() => {
       const here = uv() as unknown as Vec2
-      const texel = vec2(GLOW_PIXEL).div(viewRays.frame.marchedSize).toConst() as Vec2
-      const glow = vec4(0).toVar() as Variable<Vec4>
-      const inPicture = (place: Vec2): Vec2 => place.sub(this.#offset).div(this.#scale).toConst()
-      const at = inPicture(here)
-      const nearness = this.#nearness(viewRays.depthAt(at))
-      const bend = nearness.mul(-4).toVar() as Variable<Float>
+      const transmittance = accumulated.light.sample(here).level(0).w.toConst() as Float
+      const own = unpack(accumulated.distances.sample(here).level(0))
+      const place = here.mul(this.#scale).add(this.#offset).mul(marchedSize).sub(0.5).toConst()
+      const first = place.floor().toConst() as Vec2
+      const part = place.sub(first).toConst() as Vec2
+      const clouds = vec3(0).toVar() as Variable<Vec3>
+      const airs = vec2(0, DARK).toVar() as Variable<Vec2>
       for (const [x, y] of CORNERS) {
-        const place = here.add(texel.mul(vec2(x - 0.5, y - 0.5))).toConst() as Vec2
-        glow.addAssign(this.#glow.sample(place).level(0))
-        bend.addAssign(this.#nearness(viewRays.depthAt(inPicture(place))))
+        const texel = first
+          .add(vec2(x + 0.5, y + 0.5))
+          .div(marchedSize)
+          .toConst()
+        const found = this.#glow.sample(texel).level(0).toConst() as Vec4
+        const weights = mix(part.oneMinus(), part, vec2(x, y)).toConst() as Vec2
+        const apart = seen.ray
+          .sample(texel)
+          .level(0)
+          .xy.sub(own.xy)
+          .div(vec2(LIKE, AIR_LIKE))
+          .toConst() as Vec2
+        const like = weights.x
+          .mul(weights.y)
+          .add(1e-3)
+          .div(apart.mul(apart).add(1))
+          .toConst() as Vec2
+        clouds.addAssign(vec3(found.xy, 1).mul(like.x.mul(found.z)))
+        airs.addAssign(vec2(found.w, 1).mul(like.y))
       }
-      const opacity = glow.z.max(LEAST_OPACITY).toConst() as Float
-      const none = LEAST_OPACITY * FARTHEST
-      const { direction, end, air } = this.#airOn(at)
-      const distance = glow.w.add(none).div(opacity).exp2().min(LONGEST_HAZE).toConst() as Float
-      const before = this.#hazeLight(direction, distance)
-      const isEdge = nearness
-        .lessThanEqual(0)
-        .and(end.lessThan(LONGEST_HAZE))
-        .or(bend.abs().greaterThan(nearness.mul(EDGE)))
-      return vec4(glow.xy.div(opacity).add(before), air, select(isEdge, -1, nearness))
+      const air = airs.x.div(airs.y).toConst() as Float
+      // Some where none of them sees a cloud.
+      const all = clouds.add(vec3(air, air, 1).mul(1e-6)).toConst() as Vec3
+      return vec4(channelColor(mix(all.xy.div(all.z), vec2(air), transmittance).toConst()), 1)
     })()
   }
 
@@ -248,19 +284,6 @@ export class LightningPasses {
     return sum.div(STEM_POINTS - 1).toConst()
   }
 
-  /** A pixel's ray, its length through lit haze [m], and the light of that. @param at - In the picture. */
-  #airOn(at: Vec2): { direction: Vec3; end: Float; air: Float } {
-    const { viewRays } = this.#clouds.passes
-    const ray = viewRayAt(viewRays, at)
-    const end = viewRayEnd(viewRays, at, ray).min(LONGEST_HAZE).toConst() as Float
-    return { ...ray, end, air: this.#hazeLight(ray.direction, end) }
-  }
-
-  /** Nearness of what was drawn, linear on planes in the picture, of depths that are not logarithmic; 0 where nothing was. */
-  #nearness(depth: Float): Float {
-    return depth.sub(this.#farDepth).abs().mul(1e4).toConst()
-  }
-
   /** Light that the air on a ray scatters once, without direction, for `STORED_POWER` [cd/m²]: from three points of the stem. */
   #hazeLight(direction: Vec3, end: Float): Float {
     const sum = float(0).toVar() as Variable<Float>
@@ -273,28 +296,12 @@ export class LightningPasses {
     return sum.mul(end).mul(STORED_POWER / (3 * 16 * Math.PI ** 2))
   }
 
-  /**
-   * Adds its light to a picture's colour. To be called inside of a shader function.
-   *
-   * @param transmittance - Part of the light from behind that passes the clouds.
-   */
-  addTo(color: Vec3, transmittance: Float): Vec3 {
-    const here = uv() as unknown as Vec2
+  /** Adds its light to a picture's colour. To be called inside of a shader function. */
+  addTo(color: Vec3): Vec3 {
     const result = color.toVar() as Variable<Vec3>
     If(this.power.greaterThan(0), () => {
-      const glow = this.#smooth
-        .sample(here.mul(this.#scale).add(this.#offset))
-        .level(0)
-        .toConst() as Vec4
-      const air = glow.z.toVar() as Variable<Float>
-      // The depth that the air has read.
-      const nearness = this.#nearness((this.#clouds.depthNode as unknown as Vec4).r)
-      If(nearness.sub(glow.w).abs().greaterThan(glow.w.mul(UNLIKE)), () => {
-        // Light of neighbours would shine over ridges and the horizon.
-        air.assign(this.#airOn(here).air)
-      })
-      const light = channelColor(mix(vec2(air), glow.xy, transmittance.oneMinus()).toConst())
-      result.addAssign(light.mul(this.power.mul(1 / STORED_POWER)).add(this.#bolt.sample(here)))
+      const light = this.#light.sample(uv()).level(0).xyz
+      result.addAssign(light.mul(this.power.mul(1 / STORED_POWER)))
     })
     return result
   }
@@ -318,7 +325,6 @@ export class LightningPasses {
     _offset.copy(channel.place).sub(viewpoint)
     this.#density.update(_offset)
     this.power.value = power.all
-    this.#farDepth.value = renderer.reversedDepthBuffer ? 0 : 1
     const { size, marchedSize, block, jitter } = this.#clouds.passes.viewRays.frame
     const marched = marchedSize.value
     const edge = block.value
@@ -329,17 +335,18 @@ export class LightningPasses {
       .setScalar((edge - 1) / 2)
       .sub(jitter.value)
       .divide(blocks)
-    const { x, y } = marched.clone().divideScalar(GLOW_PIXEL).floor().addScalar(1)
-    for (const target of [this.#target, this.#smoothTarget]) target.setSize(x, y)
+    this.#glowTarget.setSize(marched.x, marched.y)
+    const { x, y } = size.value
+    this.#target.setSize(Math.ceil(x / LIGHT_PIXEL), Math.ceil(y / LIGHT_PIXEL))
+    this.#glowPass.render(renderer, this.#glowTarget)
     this.#pass.render(renderer, this.#target)
-    this.#smoothPass.render(renderer, this.#smoothTarget)
-    this.#bolt.render(renderer, view, _offset, channel, power)
+    this.#bolt.render(renderer, view, _offset, channel, power.branches / power.all, this.#target)
   }
 
   /** Frees render targets and passes. */
   dispose(): void {
-    const targets = [this.#target, this.#smoothTarget]
-    const passes = [this.#pass, this.#smoothPass, this.#bolt, this.#density]
+    const targets = [this.#glowTarget, this.#target]
+    const passes = [this.#glowPass, this.#pass, this.#bolt, this.#density]
     for (const owned of [...targets, ...passes]) owned.dispose()
   }
 }

@@ -22,8 +22,8 @@ import type { PlacedChannel, StormColumn } from './channel'
 
 /** Cells along the ground and upwards; slices lie in rows of tiles. */
 const SIZE = 96
-const SLICES = 32
-const TILES = [8, 4] as const
+const SLICES = 48
+const TILES = [8, 6] as const
 /**
  * Half width of the box, and the distance from its middle at which cells are four times as wide as there [m]. Smaller: clouds farther away
  * are lit by one factor (*Storm at night*); greater: coarse cells.
@@ -45,6 +45,14 @@ export const OPEN = 4
 const THINNEST = 3
 /** Scaled extinction below which there is no cloud [1/m]. */
 const CLEAR = 3e-4
+
+/** Corners of a tetrahedron half a cell about a place [cells]. */
+const CORNERS = [
+  [0.5, 0.5, 0.5],
+  [0.5, -0.5, -0.5],
+  [-0.5, 0.5, -0.5],
+  [-0.5, -0.5, 0.5]
+] as const
 
 /** Depth passed on a way out of a cloud, as the light that comes out, over `OPEN`. */
 const passed = (depth: Float): Float => float(OPEN).div(depth.add(OPEN))
@@ -161,7 +169,10 @@ export class StormDensity {
     })()
   }
 
-  /** Light that arrives at a cell, over what an even ball would send there, and 1 if its cloud is another than the flash's. */
+  /**
+   * Light that got out of the clouds before that of a cell, or would get out of the flash's own ball, over what an even ball would send there; depth of its
+   * own cloud; and 1 if that is another than the flash's.
+   */
   #lit(): Vec4 {
     return Fn(() => {
       const way = this.#cell().sub(this.#source).toConst() as Vec3
@@ -173,36 +184,39 @@ export class StormDensity {
       /** Depth of the present cloud; light that got out of those before it, if there are any. */
       const depth = float(0).toVar() as Variable<Float>
       const out = float(0).toVar() as Variable<Float>
-      const outOf = (): Float =>
-        select(out.greaterThan(0), out, open).mul(passed(depth)).min(THINNEST).toConst()
+      const before = (): Float => select(out.greaterThan(0), out, open)
       loop('lightStep', SAMPLES, index => {
         // Finest at both ends: what is before the place makes its form.
         const even = float(index).add(0.5).div(SAMPLES).toConst() as Float
         const part = even.mul(even).mul(even.mul(-2).add(3))
         const density = this.#densityAt(this.#source.add(way.mul(part)).toConst()).toConst()
         If(density.lessThan(CLEAR), () => {
-          out.assign(outOf())
+          out.assign(before().mul(passed(depth)).min(THINNEST))
           depth.assign(0)
         }).Else(() => {
           depth.addAssign(density.mul(even).mul(even.oneMinus()).mul(length))
         })
       })
-      return vec4(outOf(), select(out.greaterThan(0), 1, 0), 0, 1)
+      return vec4(before(), depth, select(out.greaterThan(0), 1, 0), 1)
     })()
   }
 
-  /** Value of a box at a place in the flash's frame; out of it, that at its edge. */
-  #read(box: LevelTexture<Vec2>, place: Vec3): Vec2 {
+  /** Value of a box at a place in the flash's frame, shifted by parts of a cell; out of it, that at its edge. */
+  #read(
+    box: LevelTexture<Vec2>,
+    place: Vec3,
+    shift = [0, 0, 0] as readonly [number, number, number]
+  ): Vec3 {
     const { x, y } = place
     const warped = vec2(x.div(x.abs().add(FINE)), y.div(y.abs().add(FINE)))
     const flat = warped
       .mul(SHRINK / 2)
-      .add(0.5)
+      .add(vec2(0.5 + shift[0] / SIZE, 0.5 + shift[1] / SIZE))
       .clamp(0.5 / SIZE, 1 - 0.5 / SIZE)
       .toConst() as Vec2
     const slice = this.#heightOf(place)
       .mul(SLICES)
-      .sub(0.5)
+      .add(shift[2] - 0.5)
       .clamp(0, SLICES - 1)
       .toConst() as Float
     const first = slice.floor().toConst() as Float
@@ -210,7 +224,7 @@ export class StormDensity {
       const row = index.div(TILES[0]).floor().toConst() as Float
       const tile = vec2(index.sub(row.mul(TILES[0])), row)
       const at = tile.add(flat).div(vec2(...TILES))
-      return box.sample(at.toConst()).level(0).xy
+      return box.sample(at.toConst()).level(0).xyz
     })
     return mix(below, above, slice.sub(first)).toConst()
   }
@@ -235,7 +249,13 @@ export class StormDensity {
   lightOut(offset: Vec3): Vec2 {
     const shifted = offset.sub(this.#place).toConst() as Vec3
     const [east, north, up] = this.#axes.map(axis => shifted.dot(axis))
-    return this.#read(this.#light, vec3(east, north, up).toConst())
+    const place = vec3(east, north, up).toConst() as Vec3
+    // Tents at the corners of a tetrahedron: smooth, as by a B-spline; one alone shows its cells.
+    const light = CORNERS.map(corner => this.#read(this.#light, place, corner))
+      .reduce((sum, each) => sum.add(each))
+      .div(CORNERS.length)
+      .toConst() as Vec3
+    return vec2(light.x.mul(passed(light.y)).min(THINNEST), light.z)
   }
 
   /** Follows the camera. @param offset - The flash's place from the camera, in the mapped space [m]. */

@@ -52,6 +52,9 @@ export function fromCamera(
   return target
 }
 
+/** Power for which half floats hold light: 1e-9 of it is left 2 km from the channel [lm]. */
+export const STORED_POWER = 1e9
+
 /** Points of {@link Channel.stem}. */
 export const STEM_POINTS = 5
 
