@@ -107,6 +107,7 @@ export const stills: readonly AnyStill[] = [
     altitude: 400_000,
     sun: { elevation: 25, azimuth: 100 },
     view: { azimuth: 60, pitch: -32 },
+    compensation: 0.8,
     fieldOfView: 35,
     land: 'planet'
   },

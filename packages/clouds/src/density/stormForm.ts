@@ -56,9 +56,14 @@ export const stormIce = {
   /** Distances from a tower's axis between which water turns into the ice of its anvil, in radii of that anvil. 0: domes of wool. */
   aside: [0.5, 1],
   /** Width of an anvil's thin rim, in its radii [–]. 0: its edge is a cliff (*Storm*). */
-  rim: 0.4,
+  rim: 0.6,
+  /**
+   * Factor of that width: the distance from the tower, in the anvil's radii, between these. Ice that has streamed far is thin. Both 1: anvils alike
+   * up and down the wind (*Storm*).
+   */
+  streaming: [0.5, 1.6],
   /** Distance from the anvil's axis where the rim ends, in its radii [–]. Less: fibres are cut off there (*Storm*). */
-  end: 1.05,
+  end: 1.1,
   /** Least square root of the rim's density [–]. 0: fibres beyond its end are not seen (*Storm*). */
   least: 0.1
 } as const
@@ -72,11 +77,15 @@ export const stormFibres = {
   /** Length of a period outwards, and upwards [m]: fibres sink by the ratio of both as they go. Shorter outwards: heads, not fibres. */
   outwards: 24_000,
   upwards: 4000,
-  /** Weights of coarse and fine billows in them [–]. */
-  weights: [0.7, 0.7],
+  /** Weights of coarse and fine billows in them [–]. Greater fine ones: grain at rims. */
+  weights: [0.7, 0.5],
+  /** Levels of detail by which they are looked up sharper than billows are [octaves]. Greater: grain at rims; smaller: wool. */
+  sharper: 0.25,
   /** Displacement of the rim per unit of them, and at most, in radii of the anvil [–]. 0: a rim like a tower's; greater: loose rags. */
   fray: 0.1,
   mostFray: 0.2,
+  /** Lead of the nearest storm over the next at which they are whole, in its radii [–]. 0: seams where two storms meet (*Storm*). */
+  lead: 0.3,
   /** Distances from the anvil's axis within which rims are, in its radii [–]. */
   rim: [0.4, 1.3]
 } as const

@@ -80,10 +80,13 @@ export function stormDensity(
   height: number,
   ice: number,
   distance: number,
-  radius: number
+  radius: number,
+  towerDistance = distance
 ): number {
-  const { rim, end, least } = stormIce
-  const inside = MathUtils.clamp((end - distance / Math.max(radius, 1)) / rim, least, 1)
+  const { rim, end, least, streaming } = stormIce
+  const [fromAxis, fromTower] = [distance, towerDistance].map(each => each / Math.max(radius, 1))
+  const width = rim * MathUtils.clamp(fromTower, ...streaming)
+  const inside = MathUtils.clamp((end - fromAxis) / width, least, 1)
   const { iceDensity } = heightForm
   return (
     MathUtils.lerp(1, inside ** 2 * iceDensity, ice) /

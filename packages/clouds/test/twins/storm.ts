@@ -31,36 +31,57 @@ function axisDistance(gap: Vector3, up: Vector3): number {
   return Math.hypot(across.length(), Math.sqrt(stormPlaces.away) * height ** 3)
 }
 
-/**
- * Float64 twin of `stormGaps`, over all cells around, of which the shader looks at the nearest eight [cells].
- *
- * @param place - Place in the lattice, in its periods.
- * @param up - Zenith in the lattice.
- * @param downwind - Displacement of a storm's anvil from its tower [cells].
- * @returns Displacements to the axes of the nearest anvil and of the nearest tower.
- */
-export function stormGaps(
-  place: Vec3Array,
-  up: Vector3,
-  downwind: Vector3
-): { anvil: Vector3; tower: Vector3 } {
+/** Storms around a place, as displacements to them [cells]. */
+interface StormGaps {
+  readonly anvil: Vector3
+  readonly tower: Vector3
+  /** Distance from the next nearest anvil of those that are searched, less that from the nearest. */
+  readonly lead: number
+}
+
+/** A storm in a cell around a place. */
+interface StormInCell {
+  /** Displacement to it [cells]. */
+  readonly gap: Vector3
+  /** True in the eight cells that the shader looks at: none beyond the farther side of the place's own. */
+  readonly isSearched: boolean
+}
+
+/** Storms in all cells around a place in the lattice [periods]. */
+function stormsAround(place: Vec3Array): StormInCell[] {
   const { cells, seed, jitter } = stormPlaces
   const at = new Vector3(...place).multiplyScalar(cells)
   const base = at.clone().floor()
-  const gaps = Array.from({ length: 27 }, (_, corner) => {
-    const [i, j, k] = [corner % 3, Math.floor(corner / 3) % 3, Math.floor(corner / 9)].map(
-      (digit, axis) => base.getComponent(axis) + digit - 1
-    )
+  const part = at.clone().sub(base).subScalar(0.5).toArray()
+  return Array.from({ length: 27 }, (_, corner) => {
+    const steps = [corner % 3, Math.floor(corner / 3) % 3, Math.floor(corner / 9)].map(n => n - 1)
+    const [i, j, k] = steps.map((step, axis) => base.getComponent(axis) + step)
     const [x, y, z] = [i, j, k].map(n => wrap(n, cells))
-    return hashCell(x, y, z + seed)
+    const gap = hashCell(x, y, z + seed)
       .subScalar(0.5)
       .multiplyScalar(jitter)
       .add(new Vector3(i + 0.5, j + 0.5, k + 0.5))
       .sub(at)
+    return { gap, isSearched: steps.every((step, axis) => step * part[axis] >= 0) }
   })
-  const nearest = (all: Vector3[]): Vector3 =>
-    all.reduce((best, gap) => (axisDistance(gap, up) < axisDistance(best, up) ? gap : best))
-  return { anvil: nearest(gaps), tower: nearest(gaps.map(gap => gap.clone().sub(downwind))) }
+}
+
+/**
+ * Float64 twin of `stormGaps`, over all cells around, of which the shader looks at the nearest eight.
+ *
+ * @param place - Place in the lattice, in its periods.
+ * @param up - Zenith in the lattice.
+ * @param downwind - Displacement of a storm's anvil from its tower [cells].
+ */
+export function stormGaps(place: Vec3Array, up: Vector3, downwind: Vector3): StormGaps {
+  const storms = stormsAround(place)
+  const byDistance = (gaps: Vector3[]): Vector3[] =>
+    gaps.toSorted((a, b) => axisDistance(a, up) - axisDistance(b, up))
+  const [anvil] = byDistance(storms.map(({ gap }) => gap))
+  const [tower] = byDistance(storms.map(({ gap }) => gap.clone().sub(downwind)))
+  const searched = storms.filter(({ isSearched }) => isSearched).map(({ gap }) => gap)
+  const [first, second] = byDistance(searched).map(gap => axisDistance(gap, up))
+  return { anvil, tower, lead: second - first }
 }
 
 /** A storm around a place: see `StormAround` of density/tsl/storm.ts. */
@@ -71,6 +92,8 @@ export interface StormAround {
   /** Place in the noise that makes fibres, for the layer's base, and the zenith there [periods]. */
   readonly fibrePlace: Vector3
   readonly zenith: Vector3
+  /** Share of fibres, in [0, 1]: none midway between two storms. */
+  readonly fibreShare: number
 }
 
 /**
@@ -106,6 +129,11 @@ export function stormAround(
     distance: cells * stormCell(layer),
     towerDistance,
     fibrePlace,
+    fibreShare: MathUtils.clamp(
+      (found.lead * stormCell(layer)) / Math.max(radius * stormFibres.lead, 1),
+      0,
+      1
+    ),
     zenith: up,
     rank: Math.exp(-(Math.max(cells / scale, 1e-4) ** power))
   }
@@ -123,7 +151,7 @@ export interface StormThere extends StormAround {
  */
 export function frayedDistance(
   layer: CloudLayerParameters,
-  { distance, towerDistance, radius, fibrePlace, zenith }: StormThere,
+  { distance, towerDistance, radius, fibrePlace, fibreShare, zenith }: StormThere,
   height: number,
   billowsAt: (place: Vec3Array) => readonly number[]
 ): number {
@@ -135,7 +163,7 @@ export function frayedDistance(
   const place = fibrePlace.clone().addScaledVector(zenith, rise / upwards)
   const [coarse, fine] = billowsAt(place.toArray())
   const fibres = weights[0] * coarse + weights[1] * fine
-  return distance - MathUtils.clamp(fray * fibres, -mostFray, mostFray) * ice * radius
+  return distance - MathUtils.clamp(fray * fibres, -mostFray, mostFray) * ice * fibreShare * radius
 }
 
 /** Float64 twin of `stormStrength`. */
@@ -164,6 +192,6 @@ export function stormStrength(
     strength: body + amount * stormBillows.fine * fine,
     detail: amount * layer.detailAmount * stormBillows.detail,
     edge: stormEdge(layer, ice),
-    crumbs: stormDensity(layer, height, ice, 2 * distance - unfrayed, radius)
+    crumbs: stormDensity(layer, height, ice, 2 * distance - unfrayed, radius, towerDistance)
   }
 }

@@ -9,7 +9,7 @@ import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from '.
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, type CloudSample } from './sample'
-import { ifStorm } from './storm'
+import { ifStorm, isStorm } from './storm'
 import type { StormNearby } from './stormNearby'
 import { stormStrength } from './stormStrength'
 import { columnStrength } from './strength'
@@ -30,6 +30,11 @@ export interface LayerSample {
    * [–]. Far away, where single clouds are not resolved, at least 0.
    */
   readonly strength: Float
+  /**
+   * Strength by which the edge is found between samples: where it is 0, an even cloud begins that hides as much as this one, whose edge in
+   * ice is thicker than a mean free path [–].
+   */
+  readonly surface: Float
 }
 
 /** Options of {@link sampleLayer}. */
@@ -119,6 +124,13 @@ function bodyAt(
  */
 const CLEAR_STRENGTH = -4
 
+/** `LayerSample.surface`: half of an edge of storms is clear, half as dense as behind it. */
+function surfaceOf(layer: LayerNodes, strength: Float, edge: Float): Float {
+  if (layer.hasStorms === false) return strength
+  const inside = strength.mul(0.5).max(strength.sub(edge.mul(0.5)))
+  return select(isStorm(layer).and(strength.greaterThan(0)), inside, strength).toConst()
+}
+
 /**
  * One layer at places near each other, in the weather on large scales around them: their texture reads do
  * not wait for each other.
@@ -138,7 +150,8 @@ export function sampleLayerAt(
   if (field.extinction)
     return samples.map(sample => {
       const extinction = field.extinction!(sample)
-      return { extinction, strength: select(extinction.greaterThan(0), 1, CLEAR_STRENGTH) }
+      const strength = select(extinction.greaterThan(0), 1, CLEAR_STRENGTH) as Float
+      return { extinction, strength, surface: strength }
     })
   const weather = unpackBackground(background)
   const { billowFootprints = billowForm.footprints } = middle
@@ -192,9 +205,10 @@ export function sampleLayerAt(
     if (areApart) samples.forEach((sample, i) => mixUnresolved(i, i + 1, sample))
     else mixUnresolved(0, samples.length, middle)
   })
-  return found.map(({ density, strength }) => ({
+  return found.map(({ density, strength }, i) => ({
     extinction: layer.density.mul(density).toConst(),
-    strength
+    strength,
+    surface: surfaceOf(layer, strength, bodies[i].edge)
   }))
 }
 

@@ -27,7 +27,7 @@ export const NOT_SAMPLED = -1e4
 export interface SamplePair {
   /** At the first and at the second place [1/m]. */
   readonly extinction: Vec2
-  /** Greatest strength of a layer at both, as of `LayerSample`; `NOT_SAMPLED` where that is not known [–]. */
+  /** Greatest `surface` of a layer at both, as of `LayerSample`; `NOT_SAMPLED` where that is not known [–]. */
   readonly strength: Vec2
   /** Distance from either in which there is likely no cloud; 0 in clouds [m]. */
   readonly likelyDistance: Float
@@ -116,7 +116,7 @@ export function samplePair(
         })
         // A user's own clouds have none that tells how far their edges are.
         if (!field.extinction) {
-          strength.assign(strength.max(vec2(first.strength, second.strength)))
+          strength.assign(strength.max(vec2(first.surface, second.surface)))
         }
         const strongest = first.strength.max(second.strength)
         likely.assign(likelyDistance(layer, strongest).mul(field.skipping))

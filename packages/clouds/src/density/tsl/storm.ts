@@ -1,7 +1,7 @@
 import { Fn, If, bool, float, mix, smoothstep } from 'three/tsl'
 import { select } from '../../select'
 import { layout, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
-import { stormPlaces, stormShape } from '../stormForm'
+import { stormFibres, stormPlaces, stormShape } from '../stormForm'
 import type { LayerNodes } from './layer'
 import { fibrePlace } from './stormFibres'
 import {
@@ -24,6 +24,8 @@ export interface StormAround {
   readonly towerDistance: Float
   /** Place in the noise that makes fibres, less its part by height [periods]. */
   readonly fibrePlace: Vec3
+  /** Share of fibres, in [0, 1]: none midway between two storms, whose fibres differ. */
+  readonly fibreShare: Float
   /** Rank of that distance among all places of the planet, in [0, 1]: 1 on the axis. */
   readonly rank: Float
 }
@@ -73,9 +75,9 @@ export function stormNearby(
   const lean = layer.shearAxis.cross(up).toConst() as Vec3
   const aside = asidePerShear(layer, lean.length(), radius).mul(stormPlaces.cells)
   const downwind = layer.displacementInFields(lean).mul(aside).toConst() as Vec3
-  const { anvil, tower } = stormGaps(place, zenith, downwind)
+  const { anvil, tower, lead } = stormGaps(place, zenith, downwind)
   const at = place.mul(stormPlaces.cells).toConst() as Vec3
-  return { anvil: at.add(anvil), tower: at.add(tower), zenith, downwind, radius }
+  return { anvil: at.add(anvil), tower: at.add(tower), lead, zenith, downwind, radius }
 }
 
 /**
@@ -90,7 +92,7 @@ export function stormAround(
   layer: LayerNodes,
   subpoint: Vec3,
   bent: Vec2,
-  { anvil, tower, zenith, downwind }: StormNearby
+  { anvil, tower, lead, zenith, downwind, radius }: StormNearby
 ): StormAround {
   const at = placeOf(layer, subpoint, bent).mul(stormPlaces.cells).toConst() as Vec3
   const toAnvil = anvil.sub(at).toConst() as Vec3
@@ -102,6 +104,7 @@ export function stormAround(
     towerDistance: squareFrom(toTower, zenith).sqrt().mul(length).toConst(),
     // From that anvil's own tower, not the nearest.
     fibrePlace: fibrePlace(anvil, downwind.sub(toAnvil), zenith, length),
+    fibreShare: lead.mul(length).div(radius.mul(stormFibres.lead).max(1)).clamp().toConst(),
     rank: stormRank(cells)
   }
 }

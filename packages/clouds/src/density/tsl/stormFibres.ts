@@ -1,4 +1,4 @@
-import { If } from 'three/tsl'
+import { If, log2 } from 'three/tsl'
 import type { CloudField } from '../CloudField'
 import { stormFibres } from '../stormForm'
 import type { Float, Vec3 } from '../../tsl-types'
@@ -13,6 +13,7 @@ export interface AnvilAround {
   readonly stormRadius: Float
   readonly fibrePlace: Vec3
   readonly fibreZenith: Vec3
+  readonly fibreShare: Float
 }
 
 /**
@@ -48,20 +49,23 @@ export function fibrePlace(axis: Vec3, fromTower: Vec3, zenith: Vec3, cell: Floa
 export function frayedDistance(
   field: CloudField,
   layer: LayerNodes,
-  { stormDistance, stormRadius, fibrePlace, fibreZenith }: AnvilAround,
+  { stormDistance, stormRadius, fibrePlace, fibreZenith, fibreShare }: AnvilAround,
   ice: Float,
   height: Float,
   level: Float
 ): Float {
-  const { upwards, weights, fray, mostFray, rim } = stormFibres
+  const { upwards, weights, fray, mostFray, rim, around, sharper } = stormFibres
   const distance = stormDistance.toVar() as Float
   const inRadii = stormDistance.div(stormRadius.max(1)).toConst()
   If(ice.greaterThan(0).and(inRadii.greaterThan(rim[0])).and(inRadii.lessThan(rim[1])), () => {
     const rise = height.mul(layer.thickness).div(upwards)
     const point = fibrePlace.add(fibreZenith.mul(rise)).toConst() as Vec3
-    const noise = decoded(field.textures.shape.sample(point).level(level))
+    // Their period is another than the shape's.
+    const period = stormRadius.div(around).min(upwards).mul(layer.perShapePeriod)
+    const own = level.sub(log2(period)).sub(sharper).max(0)
+    const noise = decoded(field.textures.shape.sample(point).level(own))
     const fibres = noise.x.mul(weights[0]).add(noise.y.mul(weights[1]))
-    const aside = fibres.mul(fray).clamp(-mostFray, mostFray).mul(ice)
+    const aside = fibres.mul(fray).clamp(-mostFray, mostFray).mul(ice.mul(fibreShare))
     distance.subAssign(aside.mul(stormRadius))
   })
   return distance

@@ -26,16 +26,18 @@ export const squareFrom = (gap: Vec3, up: Vec3): Float => {
   return gap.dot(gap).sub(square).add(aside).max(0)
 }
 
-/** Displacements to the axes of storms, in the lattice [cells]. */
+/** Storms around a place, as displacements to their axes in the lattice [cells]. */
 export interface StormGaps {
   /** To the axis of the nearest anvil. */
   readonly anvil: Vec3
   /** To the axis of the anvil whose tower is nearest: where storms crowd, it may be that of another storm. */
   readonly tower: Vec3
+  /** Distance from the axis of the next nearest anvil, less that from the nearest. */
+  readonly lead: Float
 }
 
 /**
- * Displacements to the nearest storms, as columns of a matrix: `StormGaps`, and 0. Twin: `stormGaps` in
+ * Displacements to the nearest storms, as columns of a matrix, and the lead: `StormGaps`. Twin: `stormGaps` in
  * test/twins/storm.ts
  *
  * @param p - Place in the lattice, in its periods.
@@ -51,6 +53,8 @@ const gapsAround = /*#__PURE__*/ Fn(
     const side = step(vec3(0.5), part).mul(2).sub(1).toConst()
     const stride = wrapped(base.add(side), count).sub(origin).toConst()
     const anvil = vec4(0, 0, 0, 99).toVar()
+    /** Square of the distance from the next nearest one. */
+    const next = float(99).toVar()
     const tower = vec4(0, 0, 0, 99).toVar()
     loop('stormCell', 8, corner => {
       const digits = digitsOf(corner, 2).toConst()
@@ -59,12 +63,15 @@ const gapsAround = /*#__PURE__*/ Fn(
         .add((1 - jitter) / 2)
       const gap = side.mul(vec3(digits)).add(place).sub(part).toConst()
       const square = squareFrom(gap, up).toConst()
-      anvil.assign(select(square.lessThan(anvil.w), vec4(gap, square), anvil))
+      const isNearer = square.lessThan(anvil.w).toConst()
+      next.assign(select(isNearer, anvil.w, next.min(square)))
+      anvil.assign(select(isNearer, vec4(gap, square), anvil))
       // Less what is the same for all.
       const fromTower = square.sub(downwind.dot(gap).mul(2)).toConst()
       tower.assign(select(fromTower.lessThan(tower.w), vec4(gap, fromTower), tower))
     })
-    return mat3(anvil.xyz, tower.xyz, vec3(0))
+    const lead = next.sqrt().sub(anvil.w.sqrt())
+    return mat3(anvil.xyz, tower.xyz, vec3(lead, 0, 0))
   },
   layout('welkinStormGaps', 'mat3', { p: 'vec3', up: 'vec3', downwind: 'vec3' })
 ) as unknown as (p: Vec3, up: Vec3, downwind: Vec3) => Mat3
@@ -77,8 +84,8 @@ interface Columns {
 /** Displacements to the nearest storms: see `gapsAround`. */
 export function stormGaps(p: Vec3, up: Vec3, downwind: Vec3): StormGaps {
   const gaps = gapsAround(p, up, downwind).toConst() as unknown as Columns
-  const [anvil, tower] = [0, 1].map(column => gaps.element(int(column)))
-  return { anvil, tower }
+  const [anvil, tower, { x: lead }] = [0, 1, 2].map(column => gaps.element(int(column)))
+  return { anvil, tower, lead: lead.toConst() }
 }
 
 /** Place in the lattice of storms, in its periods, of a displaced look-up. */
@@ -111,6 +118,7 @@ export type KeptStorm = { readonly [Key in keyof StormNearby]: Variable<StormNea
 export const keptStorm = (): KeptStorm => ({
   anvil: vec3(0).toVar(),
   tower: vec3(0).toVar(),
+  lead: float(0).toVar(),
   zenith: vec3(0).toVar(),
   downwind: vec3(0).toVar(),
   radius: float(0).toVar()

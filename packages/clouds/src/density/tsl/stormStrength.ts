@@ -44,10 +44,12 @@ export const smoothStormStrength = (
  * @param all - `iceAt`.
  * @param ice - Share of ice there.
  * @param inRadii - Distance from the anvil's axis, in its radii.
+ * @param fromTower - Distance from the tower's axis, in the same.
  */
-function stormDensity(all: Float, ice: Float, inRadii: Float): Float {
-  const { rim, end, least } = stormIce
-  const inside = inRadii.negate().add(end).div(rim).clamp(least, 1).toConst() as Float
+function stormDensity(all: Float, ice: Float, inRadii: Float, fromTower: Float): Float {
+  const { rim, end, least, streaming } = stormIce
+  const width = fromTower.clamp(...streaming).mul(rim)
+  const inside = inRadii.negate().add(end).div(width).clamp(least, 1).toConst() as Float
   const ofHeight = all.mix(1, heightForm.iceDensity)
   return ice.mix(1, inside.mul(inside).mul(heightForm.iceDensity)).div(ofHeight).toConst()
 }
@@ -64,7 +66,8 @@ export function stormStrength(
   const { coarse, fine, detail, inIce, softIce, reach } = stormBillows
   const all = iceAt(layer, height)
   const perRadius = weather.stormRadius.max(1).reciprocal().toConst() as Float
-  const aside = smoothstep(...stormIce.aside, weather.towerDistance.mul(perRadius))
+  const fromTower = weather.towerDistance.mul(perRadius).toConst() as Float
+  const aside = smoothstep(...stormIce.aside, fromTower)
   const ice = all.mul(aside).toConst() as Float
   const amount = ice.mix(1, inIce).mul(layer.shapeAmount).toConst() as Float
   const stormDistance = frayedDistance(field, layer, weather, ice, height, level)
@@ -77,6 +80,11 @@ export function stormStrength(
     detail: amount.mul(layer.detailAmount).mul(detail).toConst(),
     edge: ice.mul(softIce).add(1).div(layer.perEdge).toConst(),
     // Fibres reach as far again in the thin rim as in its edge.
-    density: stormDensity(all, ice, stormDistance.mul(2).sub(weather.stormDistance).mul(perRadius))
+    density: stormDensity(
+      all,
+      ice,
+      stormDistance.mul(2).sub(weather.stormDistance).mul(perRadius),
+      fromTower
+    )
   }
 }

@@ -22,9 +22,10 @@ export interface CloudWeather {
   readonly stormDistance: Float
   readonly towerDistance: Float
   readonly stormRadius: Float
-  /** In layers of storms, `fibrePlace` of `StormAround` and the zenith there. */
+  /** In layers of storms, `fibrePlace` and `fibreShare` of `StormAround` and the zenith there. */
   readonly fibrePlace: Vec3
   readonly fibreZenith: Vec3
+  readonly fibreShare: Float
 }
 
 /** ln(c / (1 − c)) / 1.702 of a coverage c: z of Φ(z) = c. */
@@ -95,6 +96,7 @@ export function cloudWeather(
   const stormDistance = float(0).toVar() as Float
   const towerDistance = float(0).toVar() as Float
   const radius = float(0).toVar() as Float
+  const fibreShare = float(0).toVar() as Float
   const [fibrePlace, fibreZenith] = [0, 1].map(() => vec3(0).toVar() as Vec3)
   ifStorm(
     layer,
@@ -106,6 +108,7 @@ export function cloudWeather(
       towerDistance.assign(storm.towerDistance)
       fibrePlace.assign(storm.fibrePlace)
       fibreZenith.assign(found.zenith)
+      fibreShare.assign(storm.fibreShare)
       single.assign(storm.rank.sub(0.5).mul(layer.weights.z).mul(cloudsLost.oneMinus().sqrt()))
     },
     () => {
@@ -127,7 +130,8 @@ export function cloudWeather(
     towerDistance,
     stormRadius: radius,
     fibrePlace,
-    fibreZenith
+    fibreZenith,
+    fibreShare
   }
 }
 

@@ -17,6 +17,12 @@ const LEAST_PROBED = 60
 const MOST_PROBED = 600
 
 /**
+ * The same at most in tall clouds, over their layer's thickness: where no shadow map is, clouds go on beyond as at the last probe. 0: anvils are
+ * dark from orbit, as if they went on up to their layer's top.
+ */
+const MOST_OF_TALL = 0.12
+
+/**
  * Low light stays among clouds for longer: cosines between which it counts as low, the distance probed then
  * [m], and how many steps more. Less: clouds glow through each other at sunset (*Cirrus*).
  */
@@ -89,14 +95,17 @@ export function localDepths(
   const slant = cosLight.abs().max(LOWEST_COSINE).reciprocal().toConst()
   const toTop = select(cosLight.greaterThan(0), rise, fall).mul(slant).toConst() as Float
   const lowness = smoothstep(-LOW_LIGHT, -LOWEST_LIGHT, cosLight.abs().negate()).toConst() as Float
+  const ofTall = top.sub(base).mul(MOST_OF_TALL).toConst() as Float
   const probed = sample.distance
     .mul(PROBED_GROWTH)
-    .clamp(LEAST_PROBED, MOST_PROBED)
+    .clamp(LEAST_PROBED, ofTall.max(MOST_PROBED))
     .max(lowness.mul(LOW_LIGHT_PROBED))
     .min(toTop)
     .toConst() as Float
   /** Extinction near the sample, optical depth towards the light, extinction above and below. */
   const found = vec4(0).toVar() as Vec4
+  /** Extinction at the last probe towards the light. */
+  const last = float(0).toVar() as Float & { addAssign: (n: Float) => void }
   const asked = float(quality.lightSteps).add(lowness.mul(LOW_LIGHT_STEPS).ceil())
   // Steps shorter than a pixel see nothing more.
   const seen = probed.div(footprintOf(field, sample).max(1e-3)).ceil().max(FEWEST_STEPS)
@@ -124,6 +133,7 @@ export function localDepths(
       const aside = select(isAbove, vec4(0, 0, extinction, 0), vec4(0, 0, 0, extinction))
       const own = select(isAside, aside, along)
       found.addAssign(select(index.lessThan(probes), own, vec4(0)))
+      last.addAssign(select(index.equal(count.sub(int(1))), extinction, 0))
     }
     return { place: { offset, altitude, up, distance: sample.distance }, add }
   }
@@ -140,10 +150,11 @@ export function localDepths(
   const beyond = sample.offset.add(toLight.mul(probed)).toConst() as Vec3
   const { toLight: far, through: all, stretch, inMap } = sampleShadows(shadows, beyond)
   const unmapped = inMap.mul(isMapped).oneMinus().toConst() as Float
-  // Where no map is: as near, thinning out towards the top.
+  // Where no map is: as near, thinning out towards the top; tall clouds as at the last probe.
   const mean = found.y.div(probed).toConst()
+  const farther = select(ofTall.greaterThan(MOST_PROBED), last, mean)
   const widest = top.sub(base).mul(WIDEST).div(layered.oneMinus().max(1e-3))
-  const guess = mean.mul(toTop.min(widest).sub(probed).max(0)).toConst()
+  const guess = farther.mul(toTop.min(widest).sub(probed).max(0)).toConst()
   const depthToLight = found.y.add(far.mul(isMapped)).add(guess.mul(unmapped)).toConst() as Float
   const behind = select(cosLight.greaterThan(0), fall, rise).mul(slant).mul(mean)
   const through = all
