@@ -44,6 +44,11 @@ const SWITCHES: readonly Switch[] = [
   { name: 'haze', least: 0.1 },
   { name: 'mist', state: { weather: 'mist' }, least: 0.1 },
   { name: 'precipitation', state: { weather: 'shower' }, least: 0.1 },
+  {
+    name: 'rainbow',
+    state: { weather: 'shower', hour: 12.3, date: Date.UTC(2026, 10, 1) },
+    least: 0.003
+  },
   { name: 'wetGround', state: { weather: 'snow' }, least: 0.1 },
   { name: 'moon', state: NIGHT, least: 0.1 },
   { name: 'moonlight', state: NIGHT, least: 0.05 },

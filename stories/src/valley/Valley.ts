@@ -234,6 +234,7 @@ export class Valley {
     this.#water.mesh.visible = water
     this.#mirror.isOn = reflections
     this.#falling.wets = this.#state.wetGround
+    this.#falling.drops.strength = Number(this.#state.rainbow)
     const keys = ['trees', 'village', 'water', 'quality'] as const
     if (keys.some(key => this.#state[key] !== before[key])) this.#redrawShadows()
     this.#applyWeather(atOnce)
