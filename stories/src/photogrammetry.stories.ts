@@ -32,6 +32,11 @@ const meta: Meta<PhotogrammetryArgs> = {
       description: 'Photographs are brighter than what they show',
       control: { type: 'range', min: 0.1, max: 1.5, step: 0.01 }
     },
+    clouds: {
+      name: 'Clouds',
+      description: 'Share of the sky that they cover, and shade the tiles from',
+      control: { type: 'range', min: 0, max: 1, step: 0.01 }
+    },
     ...timeArgTypes,
     ...rendererArgTypes,
     path: { table: { disable: true } }
@@ -42,6 +47,7 @@ const meta: Meta<PhotogrammetryArgs> = {
     place: 'local',
     strength: 1,
     albedo: 0.8,
+    clouds: 0.3,
     day: Date.UTC(2026, 5, 21),
     hour: 23.4,
     exposure: 0.5,
@@ -58,14 +64,29 @@ type Story = StoryObj<PhotogrammetryArgs>
 /** An evening's light and shadows on local tiles, which have neither. */
 export const Local: Story = { tags: ['screenshot'] }
 
+/** The same tiles by the light of the moon: photographs were taken by day. */
+export const Night: Story = {
+  args: { day: Date.UTC(2026, 8, 27), hour: 4.5, exposure: 1 },
+  tags: ['screenshot', 'webgpu-only']
+}
+
 /** The photographs as they are, in today's air. */
 export const Untouched: Story = { args: { strength: 0 } }
 
 /** Needs a key and a network: without, the local tiles, as in the picture here. */
-export const Manhattan: Story = { args: { place: 'manhattan', hour: 22.5 } }
+export const Manhattan: Story = {
+  name: 'Manhattan with a key, without it Tennessee',
+  args: { place: 'manhattan', hour: 22.5 }
+}
 
 /** Needs a key and a network: without, the local tiles, as in the picture here. */
-export const Fuji: Story = { args: { place: 'fuji', hour: 20.5 } }
+export const Fuji: Story = {
+  name: 'Fuji with a key, without it Tennessee',
+  args: { place: 'fuji', hour: 20.5 }
+}
 
 /** Needs a key and a network: without, the local tiles, as in the picture here. */
-export const London: Story = { args: { place: 'london', hour: 18.5 } }
+export const London: Story = {
+  name: 'London with a key, without it Tennessee',
+  args: { place: 'london', hour: 18.5 }
+}

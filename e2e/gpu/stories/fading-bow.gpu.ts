@@ -32,7 +32,8 @@ gpuTest('rain fades from its bow to smooth scattering of as much light, and back
 
   const physical = await phase(drops)
   const whole = await phase(rain)
-  expectTrue(whole.join() === physical.join(), 'it is not the rain that it was made of')
+  const other = Math.max(...angles.map((_, i) => Math.abs(whole[i] / physical[i] - 1)))
+  expectTrue(other < 1e-5, `rain with its bow is off by ${other}`)
   const { version } = rain
   rain.strength = 0
   expectTrue(rain.version > version, 'who draws it does not know of the change')
