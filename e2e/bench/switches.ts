@@ -6,6 +6,7 @@ import { Valley, type ValleyState } from '../../stories/src/valley/Valley'
 import type { ValleyName } from '../../stories/src/valley/views'
 import { nextFrame, release, type HeadlessDevice } from '../headless/device'
 import { readPicture } from '../stills/readPicture'
+import { rowsOf } from './rows'
 
 /** Frames after a switch, in which shadows, light of the sky and exposure follow. */
 const FRAMES = 40
@@ -109,13 +110,18 @@ const switchLine = (change: SwitchChange): string => {
  * Throws each switch of the valley's panel to and fro, and compares the pictures.
  *
  * @param only - Switches, by name; all if there are none.
- * @throws If one changes nothing that one sees, or does not come back.
+ * @throws If one changes nothing that one sees, or does not come back, or a name is of none.
  */
 export async function measureSwitches(
   device: HeadlessDevice,
   only: readonly string[],
   log: (text: string) => void
 ): Promise<SwitchChange[]> {
+  const taken = rowsOf(
+    'switches',
+    SWITCHES.map(({ name }) => name),
+    only
+  )
   const size = [480, 270] as const
   const renderer = await device.renderer(...size, { reversedDepthBuffer: true })
   renderer.highPrecision = true
@@ -152,7 +158,7 @@ export async function measureSwitches(
   const changes: SwitchChange[] = []
   for (const each of SWITCHES) {
     const { name, value, least, state } = each
-    if (only.length > 0 && !only.includes(name)) continue
+    if (!taken.has(name)) continue
     const isOfExposure = name === 'autoExposure'
     const asked: ValleyState = { ...base, ...state }
     // An exposure that stays must stand out: it is that of another hour. Others must not hide behind one that adapts.
