@@ -67,6 +67,9 @@ export async function createPhotogrammetry(
   const depth = scenePass.getTextureNode('depth')
   const lit = surfaceLighting(scenePass.getTextureNode(), depth, camera, lights)
   const air = aerialPerspective(lit, depth, camera, atmosphere)
+  pipeline.outputNode = air
+  // #endregion
+  // #region clouds over photogrammetry
   const layers = cloudPreset('fairWeather')
   const node = clouds(air, depth, camera, atmosphere, layers)
   pipeline.outputNode = node

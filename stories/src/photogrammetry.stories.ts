@@ -8,7 +8,13 @@ import { storyCode } from './storyCode'
 
 const meta: Meta<PhotogrammetryArgs> = {
   title: 'Photogrammetry tiles',
-  render: mount(createPhotogrammetry, storyCode(['photogrammetry.scene.ts', 'photogrammetry'])),
+  render: mount(
+    createPhotogrammetry,
+    storyCode(
+      ['photogrammetry.scene.ts', 'photogrammetry'],
+      ['photogrammetry.scene.ts', 'clouds over photogrammetry']
+    )
+  ),
   argTypes: {
     url: {
       name: 'Tileset',
@@ -50,7 +56,7 @@ const meta: Meta<PhotogrammetryArgs> = {
     clouds: 0.3,
     day: Date.UTC(2026, 5, 21),
     hour: 23.4,
-    exposure: 0.5,
+    exposure: -1,
     forceWebGL: false,
     path: 'post',
     frame: false
@@ -66,7 +72,7 @@ export const Local: Story = { tags: ['screenshot'] }
 
 /** The same tiles by the light of the moon: photographs were taken by day. */
 export const Night: Story = {
-  args: { day: Date.UTC(2026, 8, 27), hour: 4.5, exposure: 1 },
+  args: { day: Date.UTC(2026, 8, 27), hour: 4.5, exposure: 0.5 },
   tags: ['screenshot', 'webgpu-only']
 }
 

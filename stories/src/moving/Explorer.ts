@@ -179,7 +179,8 @@ export class Explorer {
 
   private endOf(position: Vector3, rotation: Quaternion) {
     const height = this.heightAt(position)
-    return { position: position.clone(), rotation: rotation.clone(), height }
+    const up = this.upAt(position, new Vector3())
+    return { position: position.clone(), rotation: rotation.clone(), up, height }
   }
 
   private axesAt(position: Vector3): LocalAxes {
