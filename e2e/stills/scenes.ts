@@ -121,6 +121,7 @@ export const stills: readonly AnyStill[] = [
   },
   {
     name: '12000km',
+    inSpace: true,
     about: 'the globe: weather of a planet without a map of it',
     clouds: { preset: 'mixed' },
     altitude: 12_000_000,
