@@ -47,7 +47,8 @@ const SWITCHES: readonly Switch[] = [
   { name: 'precipitation', state: { weather: 'shower' }, least: 0.1 },
   {
     name: 'rainbow',
-    state: { weather: 'shower', hour: 12.3, date: Date.UTC(2026, 10, 1) },
+    // Ground that gets wetter changes of itself.
+    state: { weather: 'shower', hour: 12.3, date: Date.UTC(2026, 10, 1), wetGround: false },
     least: 0.003
   },
   { name: 'wetGround', state: { weather: 'snow' }, least: 0.1 },

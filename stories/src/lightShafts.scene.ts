@@ -58,7 +58,7 @@ function landOf(
   renderer: WebGPURenderer,
   { land }: ShaftView,
   { parameters }: Atmosphere
-): { object: Object3D; dispose: () => void } | undefined {
+): { object: Object3D; roofAt?: (place: Vector3) => number; dispose: () => void } | undefined {
   if (land === 'planet') return undefined
   if (land === 'hills' || land === 'ridge') {
     const radius = parameters.bottomRadius
@@ -99,7 +99,10 @@ export async function createLightShafts(
   travel(undefined, camera, placeCamera, 0)
   const explorer = args.frame
     ? undefined
-    : new Explorer(camera, canvas, { groundAt: groundBelow(view) })
+    : new Explorer(camera, canvas, {
+        groundAt: groundBelow(view),
+        footingAt: place => groundBelow(view)(place) + Math.max(land?.roofAt?.(place) ?? 0, 0)
+      })
   const elapsed = frameClock(args.frame)
   const air = new Air(renderer, scene, camera, 'post')
   const { atmosphere, sun, sky } = air

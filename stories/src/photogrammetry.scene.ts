@@ -137,6 +137,8 @@ export async function createPhotogrammetry(
     tiles.ask(current, { onLine: navigator.onLine, origin: location.origin })
     const count = ++asked
     ready = tiles.ready.then(async () => {
+      // Exposure takes its numbers from the tables.
+      if (current.frame) await atmosphere.bake(renderer)
       // Only what was asked for last is drawn.
       for (let i = 0; current.frame && count === asked && i < STILL_FRAMES; i++) {
         await new Promise(requestAnimationFrame)
