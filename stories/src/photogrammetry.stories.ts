@@ -70,7 +70,7 @@ type Story = StoryObj<PhotogrammetryArgs>
 /** An evening's light and shadows on local tiles, which have neither. */
 export const Local: Story = { tags: ['screenshot'] }
 
-/** The same tiles by the light of the moon: photographs were taken by day. */
+/** Moonlight on the same tiles, whose photographs were taken by day. */
 export const Night: Story = {
   args: { day: Date.UTC(2026, 8, 27), hour: 4.5, exposure: 0.5 },
   tags: ['screenshot', 'webgpu-only']

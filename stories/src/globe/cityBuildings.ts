@@ -165,5 +165,9 @@ export function createBuildings(): {
   geometry.setAttribute('uv', new Float32BufferAttribute(uvs, 2))
   geometry.setAttribute('color', new Float32BufferAttribute(colors, 3))
   geometry.setIndex(indices)
-  return { geometry, trees, obstacles: boxes.map(box => ({ ...box, top: box.height })) }
+  return {
+    geometry,
+    trees,
+    obstacles: boxes.map(({ x, z, width, depth, height }) => ({ x, z, width, depth, top: height }))
+  }
 }

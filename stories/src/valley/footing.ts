@@ -1,5 +1,5 @@
 import type { ExplorerOptions } from '../moving/ExplorerOptions'
-import { topOf } from '../moving/obstacles'
+import { topOf, type Obstacle } from '../moving/obstacles'
 import { groundHeight } from './ground'
 import { LAKE } from './places'
 import { outlines } from './village'
@@ -19,10 +19,10 @@ export function valleyFooting(
   isShown: () => { readonly village: boolean; readonly water: boolean }
 ): Required<Pick<ExplorerOptions, 'footingAt' | 'waterAt'>> {
   const houses = topOf(
-    outlines().map(house => ({
-      ...house,
-      top: groundHeight(house.x, house.z) + house.height + ROOF
-    }))
+    outlines().map(({ x, z, width, depth, turn, height }): Obstacle => {
+      const top = groundHeight(x, z) + height + ROOF
+      return { x, z, width, depth, turn, top }
+    })
   )
   return {
     footingAt(position) {
