@@ -1,22 +1,18 @@
 import type { Picture } from './picture'
 
-/** Value of a colour as it is shown, in [0, 1]. */
-const shown = (value: number): number => Math.min(Math.max(value, 0), 1) ** (1 / 2.2)
+/** Colours of a picture as they are shown, in [0, 1], without alpha. */
+const shown = ({ data }: Picture): number[] =>
+  [...data.filter((_, i) => i % 4 !== 3)].map(value => Math.min(Math.max(value, 0), 1) ** (1 / 2.2))
 
-/** Factor of a picture's change to another that fits a fault best, by least squares. */
-function share(fault: readonly number[], from: readonly number[], to: Picture): number {
-  let [along, all] = [0, 0]
-  for (const [i, value] of from.entries()) {
-    const change = shown(to.data[i]) - value
-    along += fault[i] * change
-    all += change * change
-  }
-  return along / all
+/** Factor of a change that fits a fault best, by least squares. */
+function share(fault: readonly number[], change: readonly number[]): number {
+  const along = fault.reduce((sum, value, i) => sum + value * change[i], 0)
+  return along / change.reduce((sum, value) => sum + value * value, 0)
 }
 
 /**
  * Trail of a turning picture: the share of an earlier picture that is left in it, less that of one that is yet to come, for blur
- * has no direction. 0 without trails, 1 where nothing but the earlier picture is shown.
+ * has no direction. 0 without trails, 1 where nothing but the earlier picture is shown and that is unlike both others.
  *
  * @param drawn - The picture in turning.
  * @param exact - As it should be.
@@ -24,8 +20,8 @@ function share(fault: readonly number[], from: readonly number[], to: Picture): 
  * @param later - As it should be as many frames on.
  */
 export function trailOf(drawn: Picture, exact: Picture, earlier: Picture, later: Picture): number {
-  const isColor = (_: unknown, i: number): boolean => i % 4 !== 3
-  const from = [...exact.data].map((value, i) => (isColor(value, i) ? shown(value) : 0))
-  const fault = from.map((value, i) => (isColor(value, i) ? shown(drawn.data[i]) - value : 0))
-  return (share(fault, from, earlier) - share(fault, from, later)) / 2
+  const [seen, now, before, after] = [drawn, exact, earlier, later].map(shown)
+  const less = (values: readonly number[]): number[] => values.map((value, i) => value - now[i])
+  const fault = less(seen)
+  return share(fault, less(before)) - share(fault, less(after))
 }
