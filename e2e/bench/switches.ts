@@ -49,7 +49,7 @@ const SWITCHES: readonly Switch[] = [
     name: 'rainbow',
     // Ground that gets wetter changes of itself.
     state: { weather: 'shower', hour: 12.3, date: Date.UTC(2026, 10, 1), wetGround: false },
-    least: 0.003
+    least: 0.002
   },
   { name: 'wetGround', state: { weather: 'snow' }, least: 0.1 },
   { name: 'moon', state: NIGHT, least: 0.1 },

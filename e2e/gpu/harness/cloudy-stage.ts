@@ -26,8 +26,6 @@ export interface CloudyOptions {
   readonly quality?: CloudQuality
   /** Vertical field of view [°]. */
   readonly field?: number
-  /** False for velocities of three's alone, in which sky and clouds stand still. */
-  readonly cloudsMove?: boolean
 }
 
 /** Clouds over boxes, under TRAA or TAAU or not. */
@@ -39,7 +37,7 @@ export class CloudyStage {
   constructor(
     readonly renderer: WebGPURenderer,
     temporal: Temporal,
-    { quality = { ...coarse, block: 1 }, field = 60, cloudsMove = true }: CloudyOptions = {}
+    { quality = { ...coarse, block: 1 }, field = 60 }: CloudyOptions = {}
   ) {
     const camera = (this.camera = new PerspectiveCamera(field, 16 / 9, 1, 1e5))
     const atmosphere = onGround()
@@ -63,8 +61,7 @@ export class CloudyStage {
     this.#pipeline.outputNode = node
     const drawn = temporal === 'none' ? depth : scenePass.getTextureNode('velocity')
     // Without TRAA, too, clouds take the camera without jitter then: they are the same ones.
-    const all = cloudVelocity(skyVelocity(drawn, depth, camera), node)
-    const motion = cloudsMove ? all : scenePass.getTextureNode('velocity')
+    const motion = cloudVelocity(skyVelocity(drawn, depth, camera), node)
     if (temporal !== 'none') scenePass.setMRT(mrt({ output, velocity }))
     if (temporal === 'traa') {
       const [picture, moves] = [convertToTexture(node), convertToTexture(motion)]
