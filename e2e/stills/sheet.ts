@@ -47,12 +47,14 @@ const views: Readonly<Record<string, Omit<Still, 'name' | 'clouds'>>> = {
 const STORM = { longitude: 139.571, latitude: 35.995 }
 const STORM_HEIGHTS: Readonly<Record<string, number>> = { '3km': 3000, '10km': 7000 }
 
+/** Still of a preset by a view. */
+function stillOf(preset: CloudPresetName, name: string): Still {
+  const still = { ...views[name], name: `sheet-${preset}-${name}`, clouds: { preset } }
+  const altitude = STORM_HEIGHTS[name]
+  if (preset !== 'cumulonimbus' || altitude === undefined) return still
+  return { ...still, place: STORM, altitude, view: { azimuth: 0, pitch: -4 }, land: 'planet' }
+}
+
 export const sheet: Still[] = presets.flatMap(preset =>
-  Object.entries(views).map(([name, view]): Still => {
-    const still = { ...view, name: `sheet-${preset}-${name}`, clouds: { preset } }
-    const altitude = STORM_HEIGHTS[name]
-    if (preset !== 'cumulonimbus' || altitude === undefined) return still
-    const sight = { azimuth: 0, pitch: -4 }
-    return { ...still, place: STORM, altitude, view: sight, land: 'planet' }
-  })
+  Object.keys(views).map(name => stillOf(preset, name))
 )

@@ -2,7 +2,10 @@ import type { Picture } from './picture'
 
 /** Colours of a picture as they are shown, in [0, 1], without alpha. */
 const shown = ({ data }: Picture): number[] =>
-  [...data.filter((_, i) => i % 4 !== 3)].map(value => Math.min(Math.max(value, 0), 1) ** (1 / 2.2))
+  Array.from(
+    data.filter((_, i) => i % 4 !== 3),
+    value => Math.min(Math.max(value, 0), 1) ** (1 / 2.2)
+  )
 
 /** Factor of a change that fits a fault best, by least squares. */
 function share(fault: readonly number[], change: readonly number[]): number {
