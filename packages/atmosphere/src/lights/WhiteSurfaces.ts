@@ -47,6 +47,8 @@ export class WhiteSurfaces {
       'position',
       new Float32BufferAttribute([-1, 3, 0, -1, -1, 0, 3, -1, 0], 3)
     )
+    // As three's quads have them: normals that are given may be a texture's.
+    geometry.setAttribute('uv', new Float32BufferAttribute([0, -1, 0, 1, 2, 1], 2))
     geometry.setAttribute('normal', new Float32BufferAttribute([0, 0, 1, 0, 0, 1, 0, 0, 1], 3))
     Object.assign(this.#material, {
       name,
