@@ -8,6 +8,7 @@ import {
   positionLocal,
   positionView,
   positionWorld,
+  screenUV,
   vec3,
   vec4
 } from 'three/tsl'
@@ -47,9 +48,19 @@ export class WhiteSurfaces {
       'position',
       new Float32BufferAttribute([-1, 3, 0, -1, -1, 0, 3, -1, 0], 3)
     )
-    // As three's quads have them: normals that are given may be a texture's.
-    geometry.setAttribute('uv', new Float32BufferAttribute([0, -1, 0, 1, 2, 1], 2))
     geometry.setAttribute('normal', new Float32BufferAttribute([0, 0, 1, 0, 0, 1, 0, 0, 1], 3))
+    const contextNode = overrideNodes(
+      [
+        [positionLocal, position],
+        [positionView, position],
+        [positionWorld, modelWorldMatrix.mul(vec4(position, 1)).xyz]
+      ],
+      null,
+      'fragment'
+    )
+    // Normals that are given may be a texture's, which asks for these.
+    const getAttribute = (attribute: string): Node | null => (attribute === 'uv' ? screenUV : null)
+    Object.assign(contextNode.value as object, { getAttribute })
     Object.assign(this.#material, {
       name,
       blending: NoBlending,
@@ -60,15 +71,7 @@ export class WhiteSurfaces {
       vertexNode: vec4(positionGeometry.xy, 0, 1),
       colorNode: vec3(1),
       normalNode: normal,
-      contextNode: overrideNodes(
-        [
-          [positionLocal, position],
-          [positionView, position],
-          [positionWorld, modelWorldMatrix.mul(vec4(position, 1)).xyz]
-        ],
-        null,
-        'fragment'
-      )
+      contextNode
     })
     this.#triangle = new Mesh(geometry, this.#material)
     this.#triangle.frustumCulled = false
