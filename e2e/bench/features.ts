@@ -5,6 +5,7 @@ import { meteredFeatures } from '../../stories/src/valley/meteredFeatures'
 import { openingState } from '../../stories/src/valley/openingState'
 import { Valley, type ValleyState } from '../../stories/src/valley/Valley'
 import { gpuMilliseconds, nextFrame, release, type HeadlessDevice } from '../headless/device'
+import { rowsOf } from './rows'
 
 /** Time of a frame on the scene's clock [s]. */
 const STEP = 1 / 30
@@ -29,6 +30,7 @@ export interface FeatureCost {
  * Measures the features of the valley at medium quality as its readout does: each is switched off for a while.
  *
  * @param only - States, by name; all if there are none.
+ * @throws If a name is of no state.
  */
 export async function measureFeatures(
   device: HeadlessDevice,
@@ -36,6 +38,7 @@ export async function measureFeatures(
   only: readonly string[],
   log: (text: string) => void
 ): Promise<FeatureCost[]> {
+  const asked = rowsOf('features', Object.keys(STATES), only)
   const renderer = await device.renderer(width, height, { reversedDepthBuffer: true })
   renderer.highPrecision = true
   renderer.shadowMap.enabled = true
@@ -59,7 +62,7 @@ export async function measureFeatures(
   }
   const costs: FeatureCost[] = []
   for (const [name, changes] of Object.entries(STATES)) {
-    if (only.length > 0 && !only.includes(name)) continue
+    if (!asked.has(name)) continue
     const state = { ...base, ...changes }
     valley.set(state, true)
     for (let i = 0; i < FIRST_FRAMES; i++) {

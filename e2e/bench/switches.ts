@@ -6,6 +6,7 @@ import { Valley, type ValleyState } from '../../stories/src/valley/Valley'
 import type { ValleyName } from '../../stories/src/valley/views'
 import { nextFrame, release, type HeadlessDevice } from '../headless/device'
 import { readPicture } from '../stills/readPicture'
+import { rowsOf } from './rows'
 
 /** Frames after a switch, in which shadows, light of the sky and exposure follow. */
 const FRAMES = 40
@@ -44,6 +45,12 @@ const SWITCHES: readonly Switch[] = [
   { name: 'haze', least: 0.1 },
   { name: 'mist', state: { weather: 'mist' }, least: 0.1 },
   { name: 'precipitation', state: { weather: 'shower' }, least: 0.1 },
+  {
+    name: 'rainbow',
+    // Ground that gets wetter changes of itself.
+    state: { weather: 'shower', hour: 12.3, date: Date.UTC(2026, 10, 1), wetGround: false },
+    least: 0.002
+  },
   { name: 'wetGround', state: { weather: 'snow' }, least: 0.1 },
   { name: 'moon', state: NIGHT, least: 0.1 },
   { name: 'moonlight', state: NIGHT, least: 0.05 },
@@ -104,13 +111,18 @@ const switchLine = (change: SwitchChange): string => {
  * Throws each switch of the valley's panel to and fro, and compares the pictures.
  *
  * @param only - Switches, by name; all if there are none.
- * @throws If one changes nothing that one sees, or does not come back.
+ * @throws If one changes nothing that one sees, or does not come back, or a name is of none.
  */
 export async function measureSwitches(
   device: HeadlessDevice,
   only: readonly string[],
   log: (text: string) => void
 ): Promise<SwitchChange[]> {
+  const taken = rowsOf(
+    'switches',
+    SWITCHES.map(({ name }) => name),
+    only
+  )
   const size = [480, 270] as const
   const renderer = await device.renderer(...size, { reversedDepthBuffer: true })
   renderer.highPrecision = true
@@ -147,7 +159,7 @@ export async function measureSwitches(
   const changes: SwitchChange[] = []
   for (const each of SWITCHES) {
     const { name, value, least, state } = each
-    if (only.length > 0 && !only.includes(name)) continue
+    if (!taken.has(name)) continue
     const isOfExposure = name === 'autoExposure'
     const asked: ValleyState = { ...base, ...state }
     // An exposure that stays must stand out: it is that of another hour. Others must not hide behind one that adapts.

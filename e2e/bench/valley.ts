@@ -6,6 +6,7 @@ import { sharesOf } from '../../stories/src/valley/shares'
 import { Valley, type ValleyState } from '../../stories/src/valley/Valley'
 import type { ValleyName } from '../../stories/src/valley/views'
 import { nextFrame, release, type HeadlessDevice } from '../headless/device'
+import { rowsOf } from './rows'
 import { median } from './statistics'
 
 const WARM_UP = 30
@@ -144,6 +145,7 @@ const sumOf = (shares: PassTime[]): number => shares.reduce((total, [, ms]) => t
  *
  * @param only - Rows that are timed, by how their names begin; if there are none all of them, the story as it opens, and what parts cost.
  * @param log - Takes lines of a report, as soon as they are known.
+ * @throws If no row's name begins so.
  */
 export async function timeValley(
   device: HeadlessDevice,
@@ -152,6 +154,12 @@ export async function timeValley(
   only: readonly string[],
   log: (text: string) => void
 ): Promise<ValleyCost> {
+  const asked = rowsOf(
+    'valley',
+    ROWS.map(({ name }) => name),
+    only,
+    (name, word) => name.startsWith(word)
+  )
   const renderer = await device.renderer(...size, { reversedDepthBuffer: true })
   renderer.highPrecision = true
   renderer.shadowMap.enabled = true
@@ -207,7 +215,7 @@ export async function timeValley(
   }
   const rows: ValleyCost['rows'] = []
   for (const row of ROWS) {
-    if (!isWhole && !only.some(name => row.name.startsWith(name))) continue
+    if (!asked.has(row.name)) continue
     const [shares] = await measure(row)
     log([` ${row.name}   ${sumOf(shares).toFixed(2)} ms`, ...list(shares)].join('\n'))
     rows.push([row.name, shares])

@@ -6,6 +6,36 @@ export interface Tones {
   clipped: number
 }
 
+/** Luminance below which a picture is of a night [cd/m²]. */
+const NIGHT = 1
+
+/** Most of a picture that may be clipped, outside of the sun's disc [–]. */
+const CLIPPED = 0.03
+
+/** Means of pictures of days, and of nights, which stay dark and are not black [–]. */
+const DAYS = [0.2, 0.5] as const
+const NIGHTS = [0.04, 0.35] as const
+/** Least mean where black space fills most of the picture [–]. */
+const IN_SPACE = 0.1
+
+/**
+ * Fault of how a picture is exposed; undefined where there is none.
+ *
+ * @param luminance - Luminance that it is exposed for [cd/m²].
+ * @param isInSpace - True where black space fills most of it.
+ */
+export function toneFault(
+  { mean, clipped }: Tones,
+  luminance: number,
+  isInSpace = false
+): string | undefined {
+  const [least, most] = luminance < NIGHT ? NIGHTS : [isInSpace ? IN_SPACE : DAYS[0], DAYS[1]]
+  if (!(clipped <= CLIPPED))
+    return `${(100 * clipped).toFixed(1)} % is clipped, not ${100 * CLIPPED} % at most`
+  if (mean >= least && mean <= most) return undefined
+  return `its mean is ${mean.toFixed(3)}, not ${least} to ${most}`
+}
+
 /**
  * Tones of a picture in sRGB.
  *

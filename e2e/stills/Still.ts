@@ -41,7 +41,9 @@ export interface Still {
   view: { azimuth: number; pitch: number }
   /** Vertical field of view [°]; default 55. */
   fieldOfView?: number
-  /** Exposure over what is metered [EV]. */
+  /** True where black space fills most of the picture. */
+  inSpace?: true
+  /** Exposure over what is metered [EV]: for a part of the picture. */
   compensation?: number
   /** Hills and trees about the camera, the same under snow, towers and streets, or the bare planet. */
   land: 'hills' | 'snow' | 'ridge' | 'city' | 'planet'

@@ -8,7 +8,7 @@ import { CustomToneMapping } from 'three'
 import type { WebGPURenderer } from 'three/webgpu'
 import { cloudReference } from '../bench/clouds'
 import { median } from '../bench/statistics'
-import { tonesOf, type Tones } from '../harness/tones'
+import { toneFault, tonesOf, type Tones } from '../harness/tones'
 import { gpuMilliseconds, HeadlessDevice, nextFrame } from '../headless/device'
 import { selectStills, stills, type AnyStill } from './scenes'
 import { StillView } from './StillView'
@@ -112,6 +112,12 @@ async function take(
   }
 }
 
+/** Fault of how a still is exposed; those that are exposed for a part of the picture have none. */
+function faultOf(still: AnyStill, { tones, luminance }: Taken): string | undefined {
+  if ('compensation' in still) return undefined
+  return toneFault(tones, luminance, 'inSpace' in still)
+}
+
 /** @param isPlanet - True if it shows metres and a planet at once. */
 async function rendererOf(device: HeadlessDevice, isPlanet: boolean): Promise<WebGPURenderer> {
   const renderer = await device.renderer(...size, { reversedDepthBuffer: isPlanet })
@@ -140,6 +146,11 @@ async function takeAll(): Promise<void> {
         `${still.name.padEnd(22)} ${gpuMs.toFixed(2)} ms a frame   ${luminance.toPrecision(3)} cd/m²   ` +
           `mean ${tones.mean.toFixed(2)}   clipped ${(100 * tones.clipped).toFixed(1)} %`
       )
+      const fault = faultOf(still, result)
+      if (fault !== undefined) {
+        console.error(`✗ ${still.name}: ${fault}`)
+        process.exitCode = 1
+      }
     } catch (error) {
       // The others are worth having all the same.
       console.error(`${still.name.padEnd(22)} failed:`, error)

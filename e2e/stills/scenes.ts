@@ -4,6 +4,7 @@ import { flashes } from './flashes'
 import { optics } from './optics'
 import { fromTheGround } from './presets'
 import { shafts } from './shafts'
+import { sheet } from './sheet'
 import type { Still, ValleyStill } from './Still'
 import { streets, type StreetStill } from './streets'
 import { terrains, type TerrainStill } from './terrains'
@@ -23,6 +24,7 @@ export const stills: readonly AnyStill[] = [
   ...valleys,
   ...terrains,
   ...streets,
+  ...sheet,
   {
     name: 'among',
     about: 'among cumulus: edges near the camera, depth of the sky',
@@ -122,6 +124,7 @@ export const stills: readonly AnyStill[] = [
   },
   {
     name: '12000km',
+    inSpace: true,
     about: 'the globe: weather of a planet without a map of it',
     clouds: { preset: 'mixed' },
     altitude: 12_000_000,

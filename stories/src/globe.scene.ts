@@ -7,6 +7,7 @@ import {
   SkyLightProbe,
   stars
 } from '@welkin/atmosphere'
+import type { Vector3 } from 'three'
 import { renderOutput, rtt } from 'three/tsl'
 import type { RenderPipeline } from 'three/webgpu'
 import { createCity } from './globe/city'
@@ -91,6 +92,7 @@ export async function createGlobe(
         night.show(current)
         weather?.show(current.clouds)
       },
+      roofAt: (position: Vector3) => city.roofAt(position),
       beforeDraw(altitude: number) {
         night.update(camera)
         const { luminanceScale } = atmosphere

@@ -88,11 +88,14 @@ export async function createHalos(
   node.time = 0
 
   const isOther = changeOf()
+  /** Radius of the droplets on show [µm]: another view's has its turn where the old clouds are gone. */
+  let dropletRadius = current.dropletRadius
   /** Shows the change of views as far as it has come. */
   const show = (): void => {
-    const { dropletRadius, regular, level } = current
+    const { regular, level } = current
     const { shown, part } = change
     const { sun, azimuth, exposure, lens } = change.numbers
+    if (shown === viewOf(current)) ({ dropletRadius } = current)
     const finished = layersOf(shown)
     if (isOther(shown)) layers.copy(finished)
     layers.at(0).coverage = finished.at(0).coverage * part

@@ -3,6 +3,7 @@ import { Mesh, PerspectiveCamera, PointLight, Scene, SpotLight } from 'three'
 import type { MeshStandardMaterial } from 'three'
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js'
 import { Air } from './air'
+import { footingOn } from './importedModel/footing'
 import { squareURL } from './importedModel/square'
 import { Explorer } from './moving/Explorer'
 import { EYE_HEIGHT } from './moving/Walk'
@@ -25,7 +26,6 @@ export async function createImportedModel(
   const camera = new PerspectiveCamera(55, 1, 0.1, 20_000)
   camera.position.set(3, EYE_HEIGHT, 17)
   camera.lookAt(0, 5, -8)
-  const explorer = args.frame ? undefined : new Explorer(camera, canvas)
   const elapsed = frameClock(args.frame)
   const air = new Air(renderer, scene, camera, args.path)
   const { atmosphere } = air
@@ -45,6 +45,9 @@ export async function createImportedModel(
     if (part instanceof Mesh) meshes.push(part)
   })
   URL.revokeObjectURL(url)
+  const solid = meshes.filter(({ name }) => name === 'wall' || name === 'stone')
+  const footingAt = footingOn(solid)
+  const explorer = args.frame ? undefined : new Explorer(camera, canvas, { footingAt })
   const glowing = meshes.flatMap(({ name, material }) =>
     name === 'lamp' || name === 'window' ? (material as MeshStandardMaterial) : []
   )

@@ -24,11 +24,13 @@ import { hillHeight } from './hills/hillHeight'
 import { Landscape } from './hills/Landscape'
 import { meadow } from './hills/soil'
 import { Explorer } from './moving/Explorer'
+import { FLIGHT_SECONDS, travel } from './moving/travel'
+import { ViewChange } from './moving/ViewChange'
 import { createRenderer, drawSettled, exposureOf, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { castLandShadow, landShadow, LIGHT_DISTANCE } from './shafts/landShadow'
 import { Ridge, ridgeHeight } from './shafts/Ridge'
-import { shaftViews, type ShaftView } from './shafts/views'
+import { argsOf, shaftViews, type ShaftView } from './shafts/views'
 import { storyHandle } from './storyHandle'
 
 export interface LightShaftsArgs extends RendererArgs {
@@ -56,7 +58,7 @@ function landOf(
   renderer: WebGPURenderer,
   { land }: ShaftView,
   { parameters }: Atmosphere
-): { object: Object3D; dispose: () => void } | undefined {
+): { object: Object3D; roofAt?: (place: Vector3) => number; dispose: () => void } | undefined {
   if (land === 'planet') return undefined
   if (land === 'hills' || land === 'ridge') {
     const radius = parameters.bottomRadius
@@ -75,16 +77,10 @@ const groundBelow =
   ({ x, z }: Vector3): number =>
     land === 'ridge' ? ridgeHeight(x, z) : land === 'hills' ? hillHeight(x, z) : 0
 
-function cameraOf({ altitude, view, land }: ShaftView): PerspectiveCamera {
-  const camera = new PerspectiveCamera(55, 1, 1, land === 'planet' ? 2e7 : 4e5)
-  camera.position.y = altitude
-  const [pitch, turn] = [view.pitch, -view.azimuth].map(MathUtils.degToRad)
-  camera.rotation.set(pitch, turn, 0, 'YXZ')
-  camera.updateMatrixWorld()
-  return camera
-}
+/** Step of the turbidity on the way to another view: the air's tables are made anew for each. */
+const TURBIDITY_STEP = 0.25
 
-/** Shadows in the air: of ridges, towers and clouds, in sunlight and moonlight. */
+/** Shadows in the air: of ridges, towers and clouds, in sunlight and moonlight; for views with the same land, clouds and light. */
 export async function createLightShafts(
   canvas: HTMLCanvasElement,
   args: LightShaftsArgs
@@ -92,12 +88,22 @@ export async function createLightShafts(
   const view: ShaftView = shaftViews[args.view]
   const renderer = await createRenderer(canvas, args.forceWebGL, false, true)
   const scene = new Scene()
-  const camera = cameraOf(view)
+  const current = { ...args }
+  const camera = new PerspectiveCamera(55, 1, 1, view.land === 'planet' ? 2e7 : 4e5)
+  const placeCamera = (moved: PerspectiveCamera): void => {
+    const { altitude, view: sight }: ShaftView = shaftViews[current.view]
+    const [pitch, turn] = [sight.pitch, -sight.azimuth].map(MathUtils.degToRad)
+    moved.position.set(0, altitude, 0)
+    moved.rotation.set(pitch, turn, 0, 'YXZ')
+  }
+  travel(undefined, camera, placeCamera, 0)
   const explorer = args.frame
     ? undefined
-    : new Explorer(camera, canvas, { groundAt: groundBelow(view) })
+    : new Explorer(camera, canvas, {
+        groundAt: groundBelow(view),
+        footingAt: place => groundBelow(view)(place) + Math.max(land?.roofAt?.(place) ?? 0, 0)
+      })
   const elapsed = frameClock(args.frame)
-  const current = { ...args }
   const air = new Air(renderer, scene, camera, 'post')
   const { atmosphere, sun, sky } = air
   const { pipeline, picture, depth } = air.post!
@@ -141,8 +147,10 @@ export async function createLightShafts(
     // #endregion
     node = deck
     if (coverage !== undefined) layers.at(0).set({ coverage })
-    if (args.frame) node.quality = STILL_QUALITY
-    node.field.bake(renderer)
+    if (args.frame) {
+      node.quality = STILL_QUALITY
+      node.field.bake(renderer)
+    }
     node.time = TIME
     color = node
   }
@@ -151,10 +159,18 @@ export async function createLightShafts(
   pipeline.outputNode = exposed
   // #endregion
 
-  const apply = (): void => {
+  const numbers = () => {
     const { strength, turbidity, elevation, azimuth, exposure } = current
+    return { strength, turbidity, elevation, azimuth, exposure }
+  }
+  const change = new ViewChange(current.view, numbers())
+  /** Shows the change of views as far as it has come. */
+  const show = (): void => {
+    const { strength, turbidity, elevation, azimuth, exposure } = change.numbers
     shafts.strength = strength
-    atmosphere.parameters.set({ turbidity })
+    const isThere = turbidity === current.turbidity
+    const stepped = Math.round(turbidity / TURBIDITY_STEP) * TURBIDITY_STEP
+    atmosphere.parameters.set({ turbidity: isThere ? turbidity : stepped })
     const direction = atmosphere.setSunAngles(elevation, azimuth).sunDirection
     if (view.isMoonlit) {
       luna.set({ direction, phase: 0.5 })
@@ -162,19 +178,31 @@ export async function createLightShafts(
     }
     renderer.toneMappingExposure = exposureOf(exposure)
   }
-  apply()
+  show()
 
   const draw = (): void => {
-    explorer?.update(elapsed())
+    const seconds = elapsed()
+    explorer?.update(seconds)
+    if (change.update(seconds)) show()
     air.render()
   }
-  return storyHandle({
+  const handle = storyHandle({
     renderer,
     scene,
     camera,
     explorer,
     current,
-    apply,
+    apply(before) {
+      const isView = before.view !== current.view
+      if (isView) {
+        const own = argsOf(current.view)
+        Object.assign(current, own)
+        handle.onArgs?.(own)
+        travel(explorer, camera, placeCamera, FLIGHT_SECONDS)
+        change.go(current.view, numbers(), explorer ? FLIGHT_SECONDS : 0)
+      } else change.set(numbers())
+      show()
+    },
     draw,
     warmUp: () => drawSettled(current.frame ? FRAMES : 0, draw, () => exposed),
     dispose() {
@@ -186,4 +214,5 @@ export async function createLightShafts(
       air.dispose()
     }
   })
+  return handle
 }

@@ -2,8 +2,8 @@ import type { Meta, StoryObj } from '@storybook/html-vite'
 import { createLightShafts } from './lightShafts.scene'
 import type { LightShaftsArgs } from './lightShafts.scene'
 import { mount } from './mount'
-import { shaftViews, type ShaftView } from './shafts/views'
-import { rendererArgTypes, shaftArgTypes } from './storyArgs'
+import { argsOf, sceneOf, shaftViews } from './shafts/views'
+import { choiceOf, rendererArgTypes, shaftArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
 
 const code = storyCode(
@@ -16,18 +16,22 @@ const code = storyCode(
 
 const { forceWebGL, frame } = rendererArgTypes
 const { strength, turbidity, azimuth, exposure } = shaftArgTypes
-const hidden = { table: { disable: true } }
-
-/** Air and light of a view, as its still has them. */
-const argsOf = (name: LightShaftsArgs['view']): Partial<LightShaftsArgs> => {
-  const { turbidity, light }: ShaftView = shaftViews[name]
-  return { view: name, turbidity, ...light }
-}
 
 const meta: Meta<LightShaftsArgs> = {
   title: 'Light shafts',
-  render: mount(createLightShafts, code, ({ view }) => view),
+  render: mount(
+    createLightShafts,
+    code,
+    ({ view }) => sceneOf(view),
+    ({ view }) => argsOf(view)
+  ),
   argTypes: {
+    view: {
+      name: 'View',
+      ...choiceOf(shaftViews),
+      description:
+        'Sets haze and light, too. One flies between the two of storms; others have land or a light of their own: a new scene, which fades in'
+    },
     strength,
     turbidity: { ...turbidity, control: { type: 'range', min: 1, max: 16, step: 0.25 } },
     elevation: {
@@ -39,10 +43,10 @@ const meta: Meta<LightShaftsArgs> = {
     exposure: { ...exposure, description: '0 as the picture asks for' },
     forceWebGL,
     frame,
-    view: hidden,
-    path: hidden
+    path: { table: { disable: true } }
   },
   args: {
+    view: 'deck',
     ...argsOf('deck'),
     strength: 1,
     exposure: 0,
@@ -62,24 +66,27 @@ export const Deck: Story = { name: 'Below a broken deck' }
 /** Rays between the shadows of spruces on a ridge, in the fog of the valley before it, the sun 9° up. */
 export const Ridge: Story = {
   name: 'Ridge at sunrise',
-  args: argsOf('ridge')
+  args: { view: 'ridge', ...argsOf('ridge') }
 }
 
 /** Towers against the sun, in haze and mist. */
 export const Towers: Story = {
   name: 'Towers in haze',
-  args: argsOf('towers'),
+  args: { view: 'towers', ...argsOf('towers') },
   tags: ['screenshot', 'webgpu-only']
 }
 
 /** A storm's shadow on its anvil and on the haze below, from 9 km. */
-export const Storm: Story = { name: "Storm's shadow from 9 km", args: argsOf('storm') }
+export const Storm: Story = {
+  name: "Storm's shadow from 9 km",
+  args: { view: 'storm', ...argsOf('storm') }
+}
 
 /** Rays that run together opposite the sunset. */
 export const Opposite: Story = {
   name: 'Anticrepuscular rays',
-  args: argsOf('opposite')
+  args: { view: 'opposite', ...argsOf('opposite') }
 }
 
 /** Moonlight through the gaps of a deck. */
-export const Moonlight: Story = { args: argsOf('moonlight') }
+export const Moonlight: Story = { args: { view: 'moonlight', ...argsOf('moonlight') } }

@@ -1,3 +1,4 @@
+import { coverWith } from './fade'
 import type { Explorer } from './moving/Explorer'
 import { formatState, parseState } from './moving/ExplorerState'
 import { showHelp } from './moving/help'
@@ -14,10 +15,19 @@ declare global {
   }
 }
 
-interface Mounted {
+/** Names of what is on show: it stays while they do. */
+interface Identity {
   key: string
+  storyId: string
+  /** Key of the arguments that take a new scene. */
+  scene: string
+}
+
+interface Mounted extends Identity {
   element: HTMLElement
   update(args: object): void
+  /** Picture on show, as an address; undefined before the first. */
+  picture(): string | undefined
   dispose(): void
 }
 
@@ -60,21 +70,29 @@ const STYLE = `
  * loaded, and sets `data-ready="true"` on the body.
  *
  * @param code - Code that a user writes for it: shown on request.
- * @param restartsWith - Key of the arguments that take a new scene when they change.
+ * @param restartsWith - Key of the arguments that take a new scene when they change; it fades in over the old one's last picture.
+ * @param setWith - Arguments that go with a new scene of the same story.
  */
 export function mount<Args extends RendererArgs>(
   create: CreateScene<Args>,
   code: string,
-  restartsWith: (args: Args) => string = () => ''
+  restartsWith: (args: Args) => string = () => '',
+  setWith: (args: Args) => Partial<Args> = () => ({})
 ): (args: Args, context: { id: string }) => HTMLElement {
   return (args, { id }) => {
-    const key = [id, args.forceWebGL, args.path, args.frame, restartsWith(args)].join(' ')
+    const scene = restartsWith(args)
+    const key = [id, args.forceWebGL, args.path, args.frame, scene].join(' ')
     if (mounted?.key === key && mounted.element.isConnected) {
       mounted.update(args)
     } else {
-      const isFirst = mounted === undefined
-      mounted?.dispose()
-      mounted = start(key, id, create, code, args, isFirst)
+      const last = mounted
+      const isSame = last?.storyId === id
+      const before = isSame && !args.frame ? last.picture() : undefined
+      const changes = isSame && last.scene !== scene ? setWith(args) : {}
+      last?.dispose()
+      const own = { key, storyId: id, scene }
+      mounted = start(own, create, code, { ...args, ...changes }, last === undefined, before)
+      if (Object.keys(changes).length > 0) showArgs(id, changes)
     }
     return mounted.element
   }
@@ -87,12 +105,12 @@ function showArgs(storyId: string, updatedArgs: object): void {
 }
 
 function start<Args extends RendererArgs>(
-  key: string,
-  id: string,
+  identity: Identity,
   create: CreateScene<Args>,
   code: string,
   args: Args,
-  isFirst: boolean
+  isFirst: boolean,
+  before: string | undefined
 ): Mounted {
   delete document.body.dataset.ready
   const element = document.createElement('div')
@@ -106,6 +124,7 @@ function start<Args extends RendererArgs>(
   element.querySelector<HTMLElement>('.welkin-code')!.hidden = args.frame
   const canvas = element.querySelector('canvas')!
   const note = element.querySelector<HTMLElement>('.welkin-note')!
+  const fade = before === undefined ? undefined : coverWith(canvas, before)
   let latest = args
   let handle: SceneHandle<Args> | undefined
   let disposed = false
@@ -155,7 +174,7 @@ function start<Args extends RendererArgs>(
       return
     }
     handle = created
-    handle.onArgs = changes => showArgs(id, changes)
+    handle.onArgs = changes => showArgs(identity.storyId, changes)
     window.welkinScene = created as unknown as SceneHandle<never>
     if (latest !== args) handle.update(latest)
     const { explorer } = handle
@@ -180,11 +199,13 @@ function start<Args extends RendererArgs>(
       }
     })
     await handle.ready
+    fade?.()
     document.body.dataset.ready = 'true'
   }
 
   run().catch((error: unknown) => {
     console.error(error)
+    fade?.()
     const message = document.createElement('div')
     message.className = 'welkin-error'
     message.textContent = `This story could not start.\nIt needs a browser with WebGPU or WebGL 2.\n\n${String(error)}`
@@ -194,7 +215,7 @@ function start<Args extends RendererArgs>(
   })
 
   return {
-    key,
+    ...identity,
     element,
     update(next) {
       latest = next as Args
@@ -204,6 +225,10 @@ function start<Args extends RendererArgs>(
           void drawFrame()
         }
       }
+    },
+    picture() {
+      handle?.render()
+      return handle && canvas.toDataURL('image/jpeg', 0.9)
     },
     dispose
   }

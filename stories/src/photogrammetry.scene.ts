@@ -1,14 +1,23 @@
 import {
   aerialPerspective,
+  airglow,
   Atmosphere,
+  exposureFor,
+  milkyWay,
+  moon,
+  MoonDirectionalLight,
+  NightLightProbe,
   SkyLightProbe,
+  stars,
   SunDirectionalLight,
   surfaceLighting
 } from '@welkin/atmosphere'
+import { CloudCover, cloudPreset, clouds, cloudShadow, cloudSkyLight } from '@welkin/clouds'
 import { Ellipsoid, fitGlobeCamera } from '@welkin/geo'
 import { Group, Object3D, PerspectiveCamera, Scene, Vector3 } from 'three'
-import { pass } from 'three/tsl'
+import { pass, shadow } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
+import { STILL_QUALITY } from './clouds/still'
 import { groundHeight } from './globe/groundHeight'
 import { flyToView, lookFrom } from './globe/places'
 import { aimShadow, prepareShadow } from './globe/sunShadow'
@@ -24,6 +33,8 @@ export interface PhotogrammetryArgs extends RendererArgs, TimeArgs, TileSource {
   place: SightName
   /** Share of Welkin's light in the picture. */
   strength: number
+  /** Share of the sky that clouds cover. */
+  clouds: number
   /** Albedo of the photographs' white. */
   albedo: number
 }
@@ -45,13 +56,35 @@ export async function createPhotogrammetry(
   const atmosphere = new Atmosphere({ frame: 'ecef' })
   const sun = new SunDirectionalLight(atmosphere)
   const sky = new SkyLightProbe(atmosphere)
-  scene.add(sun, sun.target, sky) // and tiles, whose materials are unlit
+  const luna = moon()
+  const moonlight = new MoonDirectionalLight(atmosphere, luna)
+  const moonlitSky = new SkyLightProbe(atmosphere, luna.source)
+  const night = new NightLightProbe(atmosphere)
+  atmosphere.add(milkyWay(), stars(), luna, airglow()) // far before near
+  const lights = [sun, sky, moonlight, moonlitSky, night]
+  scene.add(...lights, sun.target, moonlight.target) // and tiles, whose materials are unlit
   const scenePass = pass(scene, camera, { samples: 0 })
   const depth = scenePass.getTextureNode('depth')
-  const lit = surfaceLighting(scenePass.getTextureNode(), depth, camera, [sun, sky])
-  pipeline.outputNode = aerialPerspective(lit, depth, camera, atmosphere)
+  const lit = surfaceLighting(scenePass.getTextureNode(), depth, camera, lights)
+  const air = aerialPerspective(lit, depth, camera, atmosphere)
+  pipeline.outputNode = air
+  // #endregion
+  // #region clouds over photogrammetry
+  const layers = cloudPreset('fairWeather')
+  const node = clouds(air, depth, camera, atmosphere, layers)
+  pipeline.outputNode = node
+  sun.castShadow = moonlight.castShadow = true
+  Object.assign(sun.shadow, { shadowNode: cloudShadow(node, shadow(sun)) }) // of tiles and clouds
+  Object.assign(moonlight.shadow, { shadowNode: cloudShadow(node, null, luna.source) })
+  for (const probe of [sky, moonlitSky, night]) cloudSkyLight(probe, node)
   // #endregion
   prepareShadow(sun)
+  const cover = new CloudCover(layers, { light: node.light })
+  if (args.frame) {
+    node.quality = STILL_QUALITY
+    node.field.bake(renderer)
+    node.time = 0
+  }
 
   const note = args.frame ? undefined : overlayOn(canvas)
   const group = new Group()
@@ -89,6 +122,9 @@ export async function createPhotogrammetry(
     const height = Ellipsoid.WGS84.heightAt(camera.position)
     Ellipsoid.WGS84.surfaceNormal(camera.position, up)
     aimShadow(sun, camera, Math.max(height, 2), up)
+    // Of the light and not of the picture: photographs that nothing lights keep their brightness.
+    const exposure = exposureFor(atmosphere, camera, { sources: [luna.source], clouds: cover })
+    atmosphere.luminanceScale = 1e-4 * exposure
     pipeline.render()
   }
   const say = (): void => {
@@ -101,6 +137,8 @@ export async function createPhotogrammetry(
     tiles.ask(current, { onLine: navigator.onLine, origin: location.origin })
     const count = ++asked
     ready = tiles.ready.then(async () => {
+      // Exposure takes its numbers from the tables.
+      if (current.frame) await atmosphere.bake(renderer)
       // Only what was asked for last is drawn.
       for (let i = 0; current.frame && count === asked && i < STILL_FRAMES; i++) {
         await new Promise(requestAnimationFrame)
@@ -114,6 +152,7 @@ export async function createPhotogrammetry(
     atmosphere.date = dateOf(current.day, current.hour)
     renderer.toneMappingExposure = exposureOf(current.exposure)
     lit.set({ strength: current.strength, albedo: current.albedo })
+    layers.at(0).coverage = current.clouds
   }
   apply()
   ask()
@@ -154,7 +193,8 @@ export async function createPhotogrammetry(
       pipeline.dispose()
       scenePass.dispose()
       lit.dispose()
-      for (const light of [sun, sky]) light.dispose()
+      node.dispose()
+      for (const light of lights) light.dispose()
       atmosphere.dispose()
       void renderer.dispose()
     }

@@ -1,4 +1,6 @@
+import type { Vector3 } from 'three'
 import { Explorer } from './moving/Explorer'
+import { topOf } from './moving/obstacles'
 import { createRenderer, drawSettled, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { storyHandle } from './storyHandle'
@@ -8,6 +10,9 @@ export interface StreetArgs extends RendererArgs, StreetWeather {}
 
 /** Time of fall in a still [s], and frames after which it has settled. */
 const STILL = { time: 60, frames: 4 }
+
+/** Distance that one keeps from walls [m]. */
+const BODY = 0.4
 
 /** Rain and snow around the camera, in a street with lamps. */
 export async function createStreet(
@@ -19,7 +24,9 @@ export async function createStreet(
   const { scene, camera } = street
   const current = { ...args }
   street.set(current)
-  const explorer = args.frame ? undefined : new Explorer(camera, canvas)
+  const roofAt = topOf(street.obstacles, BODY)
+  const footingAt = (place: Vector3): number => Math.max(roofAt(place), 0)
+  const explorer = args.frame ? undefined : new Explorer(camera, canvas, { footingAt })
   const elapsed = frameClock(args.frame)
   await street.atmosphere.bake(renderer)
   const draw = (): void => {

@@ -4,6 +4,7 @@ import { Explorer } from './moving/Explorer'
 import { changeOf, createRenderer, drawSettled, fitToCanvas, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
 import { ShownHour } from './ShownHour'
+import { valleyFooting } from './valley/footing'
 import { HourArc } from './valley/HourArc'
 import { Readout } from './valley/readout'
 import { Valley, type ValleyState } from './valley/Valley'
@@ -40,7 +41,10 @@ export async function createValley(
   const { scene, camera } = valley
   const explorer = current.frame
     ? undefined
-    : new Explorer(camera, canvas, { groundAt: place => valley.groundAt(place) })
+    : new Explorer(camera, canvas, {
+        groundAt: place => valley.groundAt(place),
+        ...valleyFooting(() => current)
+      })
   const shown = (): ValleyState => ({ ...stateOf(current), hour: shownHour.byHand })
   /** Changes by which a feature is off that is measured. */
   let off: Partial<ValleyState> = {}

@@ -70,6 +70,7 @@ const meta: Meta<ValleyArgs> = {
     haze: part('Haze'),
     mist: part('Mist'),
     precipitation: part('Rain and snow'),
+    rainbow: part('Rainbow'),
     wetGround: part('Wet ground and snow cover'),
     flashes: {
       ...part('Lightning'),

@@ -33,6 +33,8 @@ export interface ValleyFeatures {
   haze: boolean
   mist: boolean
   precipitation: boolean
+  /** Bows in rain under clouds. */
+  rainbow: boolean
   /** Wet ground and snow cover. */
   wetGround: boolean
   moon: boolean

@@ -329,6 +329,30 @@ describe('on a globe', () => {
     expect(camera.position.distanceTo(position)).toBeLessThan(1e-6)
   })
 
+  it.each([
+    ['the antipodes', new Vector3(-1010, 0, 0), new Vector3(0, 0, -1)],
+    ['near them', new Vector3(-1005, 60, 40), new Vector3(0, 0.1, -1).normalize()]
+  ])(
+    'flies around it to %s without a jump, and looks ahead all the way',
+    (_, position, direction) => {
+      const { camera, explorer, run } = explore(globe)
+      explorer.state = { x: 1010, y: 0, z: 0, heading: 0, pitch: 0, walking: 0 }
+      void explorer.flyTo({ position, direction }, 4)
+      const before = { position: camera.position.clone(), direction: directionOf(camera) }
+      for (let i = 0; i < 241; i++) {
+        run(1 / 60)
+        // 1.875 times the mean speed at most.
+        expect(camera.position.angleTo(before.position)).toBeLessThan(0.025)
+        expect(directionOf(camera).angleTo(before.direction)).toBeLessThan(0.03)
+        expect(Math.abs(explorer.state.pitch)).toBeLessThan(8)
+        before.position.copy(camera.position)
+        before.direction.copy(directionOf(camera))
+      }
+      expect(camera.position.distanceTo(position)).toBeLessThan(1e-6)
+      expect(directionOf(camera).distanceTo(direction)).toBeLessThan(1e-6)
+    }
+  )
+
   it('measures heading from its pole', () => {
     const { camera, explorer } = explore(globe)
     explorer.state = { x: 1010, y: 0, z: 0, heading: 90, pitch: 0, walking: 0 }

@@ -3,12 +3,14 @@ import { Texture } from 'three'
 import type { InstancedMesh, Object3D } from 'three'
 import type { TextureNode, WebGPURenderer } from 'three/webgpu'
 import { expect, it, vi } from 'vitest'
+import { FadingBow } from '../src/valley/FadingBow'
 import { openingState } from '../src/valley/openingState'
 import { Valley, type ValleyState } from '../src/valley/Valley'
 import type { ValleyFactors } from '../src/valleyFactors'
 
 // Nothing is drawn: `npm run bench -- --only switches` compares pictures, on a GPU.
 const renderer = { initRenderTarget: () => undefined } as unknown as WebGPURenderer
+const bow = vi.spyOn(FadingBow.prototype, 'strength', 'set')
 const valley = new Valley(renderer, { ...openingState, quality: 'low' })
 const { air, atmosphere, pipeline, scene } = valley
 const layers = () => [...air.clouds.field.layers].map(({ parameters }) => parameters)
@@ -48,6 +50,7 @@ const strengths: Partial<Record<keyof ValleyState, () => number>> = {
   shafts: () => air.shafts.strength,
   haze: () => layerOf(AirStyle).haze,
   precipitation: () => Math.max(...layers().map(({ precipitation }) => precipitation?.rate ?? 0)),
+  rainbow: () => bow.mock.lastCall![0],
   mist: () => Math.max(...layers().map(each => (each.topAltitude < 700 ? each.coverage : 0))),
   moon: () => layerOf(Moon).strength,
   stars: () => layerOf(Stars).intensity,

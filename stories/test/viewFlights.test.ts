@@ -84,25 +84,34 @@ const poseOf = (camera: Camera): number[] => [
   ...camera.getWorldDirection(new Vector3()).toArray()
 ]
 
+/** Change of the arguments of a story, from its own or from others. */
+interface Change {
+  readonly file: string
+  readonly change: object
+  readonly from?: object
+}
+
 /** Views that stories without a world of tiles go to. */
-const changes: readonly (readonly [file: string, change: object])[] = [
-  ['rain', { view: 'virga' }],
-  ['rain', { view: 'snow' }],
-  ['halos', { view: 'glory' }],
-  ['halos', { view: 'rainbow' }],
-  ['stormNight', { view: 'aeroplane' }],
-  ['orbit', { angle: 250 }],
-  ['orbit', { altitude: 900 }],
-  ['planets', { height: 200_000 }],
-  ['planets', { pitch: 30 }],
-  ['night', { constellation: 'cassiopeia' }],
-  ['moon', { target: 'sun', fieldOfView: 40 }],
-  ['sandbox', { heading: 120, height: 300 }]
+const changes: readonly Change[] = [
+  { file: 'rain', change: { view: 'virga' } },
+  { file: 'rain', change: { view: 'snow' } },
+  { file: 'halos', change: { view: 'glory' } },
+  { file: 'halos', change: { view: 'rainbow' } },
+  { file: 'stormNight', change: { view: 'aeroplane' } },
+  { file: 'orbit', change: { angle: 250 } },
+  { file: 'orbit', change: { angle: 215 }, from: { angle: 35 } },
+  { file: 'orbit', change: { altitude: 900 } },
+  { file: 'planets', change: { height: 200_000 } },
+  { file: 'planets', change: { pitch: 30 } },
+  { file: 'night', change: { constellation: 'cassiopeia' } },
+  { file: 'moon', change: { target: 'sun', fieldOfView: 40 } },
+  { file: 'lightShafts', change: { view: 'opposite' }, from: { view: 'storm' } },
+  { file: 'sandbox', change: { heading: 120, height: 300 } }
 ]
 
-it.each(changes)('%s flies to %j', async (file, change) => {
+it.each(changes)('$file flies to $change', async ({ file, change, from }) => {
   const { args, render } = await load(`${file}.stories`)
-  const start = (more: object) => render.create(canvasOf(), { ...args, ...more })
+  const start = (more: object) => render.create(canvasOf(), { ...args, ...from, ...more })
   const [scene, there] = [await start({}), await start(change)]
   await scene.ready
   await there.ready
@@ -110,7 +119,7 @@ it.each(changes)('%s flies to %j', async (file, change) => {
   explorer.update(0.02)
   there.explorer!.update(0.02)
   const before = poseOf(scene.camera)
-  scene.update({ ...args, ...change })
+  scene.update({ ...args, ...from, ...change })
   await scene.ready
   expect(explorer.isFlying).toBe(true)
   expect(poseOf(scene.camera)).toEqual(before)

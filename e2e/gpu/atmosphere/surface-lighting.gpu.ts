@@ -24,7 +24,7 @@ import {
   SphereGeometry,
   Vector3
 } from 'three'
-import { Fn, pass, texture, vec2, vec4 } from 'three/tsl'
+import { Fn, mrt, normalView, output, pass, texture, vec2, vec4 } from 'three/tsl'
 import { RenderPipeline } from 'three/webgpu'
 import { depthNormal } from '../../../packages/atmosphere/src/lights/tsl/depthNormal'
 import { DepthRays } from '../../../packages/atmosphere/src/view/DepthRays'
@@ -123,11 +123,12 @@ gpuTest(
 
     const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
     const color = scenePass.getTextureNode()
-    const lighting = surfaceLighting(color, scenePass.getTextureNode('depth'), camera, [
-      sun,
-      sky,
-      lamp
-    ])
+    scenePass.setMRT(mrt({ output, normal: normalView }))
+    const depth = scenePass.getTextureNode('depth')
+    const lights = [sun, sky, lamp]
+    const lighting = surfaceLighting(color, depth, camera, lights)
+    const normal = scenePass.getTextureNode('normal')
+    const withNormals = surfaceLighting(color, depth, camera, lights, { normal })
     const pipeline = new RenderPipeline(renderer)
     pipeline.outputColorTransform = false
     const draw = async (output: typeof color | typeof lighting): Promise<Picture> => {
@@ -145,6 +146,7 @@ gpuTest(
     meshes.forEach((mesh, i) => (mesh.material = unlit[i]))
     const picture = await draw(color)
     const relit = await draw(lighting)
+    const relitByNormals = await draw(withNormals)
     lighting.strength = 0
     const untouched = await draw(lighting)
     lighting.strength = 0.5
@@ -164,11 +166,17 @@ gpuTest(
     )
     expectTrue(at(0.5) < 2e-3, `median difference ${at(0.5)}`)
     expectTrue(at(0.95) < 0.03, `difference of 95 % ${at(0.95)}`)
+    // Normals that are given are those of the materials, at edges too.
+    const byNormals = relativeDifferences(relitByNormals, reference)
+    const most = byNormals[Math.floor(0.99 * byNormals.length)]
+    t.note(`with given normals 99 % ${most.toFixed(4)}`)
+    expectTrue(most < 0.5 * at(0.99), `difference of 99 % ${most} with given normals`)
     const i = 4 * (60 * size.width + 64)
     const middle = (picture.data[i] + relit.data[i]) / 2
     expectClose(half.data[i], middle, { relative: 1e-3 }, 'half the strength')
     pipeline.dispose()
     lighting.dispose()
+    withNormals.dispose()
     scenePass.dispose()
     atmosphere.dispose()
   }

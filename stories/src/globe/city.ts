@@ -33,6 +33,7 @@ import {
 } from 'three/tsl'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
 import type { Node } from 'three/webgpu'
+import { topOf } from '../moving/obstacles'
 import { randomSequence } from '../random'
 import { BLOCK, CITY_EXTENT, createBuildings, STREET_WIDTH } from './cityBuildings'
 import type { Point } from './cityBuildings'
@@ -173,11 +174,16 @@ function plant(
   return mesh
 }
 
+/** Distance from walls that one keeps, whose near plane is a metre away [m]. */
+const BODY = 1.6
+
 export interface City {
   /** Position in ECEF [m]. */
   object: Group
   /** `luminanceScale` of the atmosphere, for lit windows and lanes. */
   scale: { value: number }
+  /** Height of the roof over the ground at a position of the world; −∞ in streets [m]. */
+  roofAt(position: Vector3): number
   dispose(): void
 }
 
@@ -195,7 +201,9 @@ export function createCity(noise: DataTexture): City {
   )
   streets.rotation.y = -PLACES.street.heading * MathUtils.DEG2RAD
 
-  const { geometry, trees } = createBuildings()
+  const { geometry, trees, obstacles } = createBuildings()
+  const roofs = topOf(obstacles, BODY)
+  const place = new Vector3()
   const buildings = new Mesh(geometry, facadeMaterial(scale))
   buildings.castShadow = true
   buildings.receiveShadow = true
@@ -216,6 +224,10 @@ export function createCity(noise: DataTexture): City {
   return {
     object,
     scale,
+    roofAt(position) {
+      streets.updateWorldMatrix(true, false)
+      return roofs(streets.worldToLocal(place.copy(position)))
+    },
     dispose() {
       for (const { geometry: shape, material } of meshes) {
         shape.dispose()

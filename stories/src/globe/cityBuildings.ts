@@ -1,4 +1,5 @@
 import { BufferGeometry, Color, Float32BufferAttribute } from 'three'
+import type { Obstacle } from '../moving/obstacles'
 import { randomSequence } from '../random'
 
 /** Distance between the middles of neighbouring streets, across and along the main street [m]. */
@@ -93,7 +94,11 @@ function layOut(): { boxes: Box[]; trees: Point[] } {
  *
  * Texture coordinates are metres along and up a wall, and (0, 0) on roofs.
  */
-export function createBuildings(): { geometry: BufferGeometry; trees: Point[] } {
+export function createBuildings(): {
+  geometry: BufferGeometry
+  trees: Point[]
+  obstacles: Obstacle[]
+} {
   const { boxes, trees } = layOut()
   const positions: number[] = []
   const normals: number[] = []
@@ -160,5 +165,9 @@ export function createBuildings(): { geometry: BufferGeometry; trees: Point[] } 
   geometry.setAttribute('uv', new Float32BufferAttribute(uvs, 2))
   geometry.setAttribute('color', new Float32BufferAttribute(colors, 3))
   geometry.setIndex(indices)
-  return { geometry, trees }
+  return {
+    geometry,
+    trees,
+    obstacles: boxes.map(({ x, z, width, depth, height }) => ({ x, z, width, depth, top: height }))
+  }
 }

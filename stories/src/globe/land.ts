@@ -49,6 +49,8 @@ export interface LandStory<Args> {
   apply(args: Args): void
   /** @param altitude - Altitude of the camera above the ellipsoid [m]. */
   beforeDraw?(altitude: number): void
+  /** Height of what one cannot walk through at a position, over the ground; −∞ where there is nothing [m]. */
+  roofAt?(position: Vector3): number
   dispose?(): void
 }
 
@@ -95,10 +97,12 @@ export async function createLand<Args extends RendererArgs>(
   controls.maxAltitude = HIGHEST_PITCH + Math.PI / 2
   controls.enableDamping = true
   hidePivot(controls)
+  const groundAt = groundHeight(terrain.tiles.group, surface.tiles.group)
   const explorer = args.frame
     ? undefined
     : new Explorer(camera, canvas, {
-        groundAt: groundHeight(terrain.tiles.group, surface.tiles.group),
+        groundAt,
+        footingAt: position => groundAt(position) + Math.max(story.roofAt?.(position) ?? 0, 0),
         upAt: (position, target) => Ellipsoid.WGS84.surfaceNormal(position, target),
         heightAt: position => Ellipsoid.WGS84.heightAt(position),
         pole: new Vector3(0, 0, 1),

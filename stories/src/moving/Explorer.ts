@@ -6,7 +6,7 @@ import type { ExplorerState } from './ExplorerState'
 import { Flight } from './Flight'
 import { LocalAxes } from './LocalAxes'
 import type { ViewAngles } from './LocalAxes'
-import { EYE_HEIGHT, HIGH, Walk } from './Walk'
+import { EYE_HEIGHT, footing, HIGH, isDeep, wading, Walk } from './Walk'
 
 export type { ExplorerOptions, ExplorerState }
 
@@ -17,6 +17,8 @@ const SPEED_PER_HEIGHT = 0.5
 /** Speed of walking [m/s]. */
 const WALKING_SPEED = 3
 const FAST = 4
+/** Turns by which one slips along a wall [rad]. */
+const SLIPS = [0, 0.5, -0.5, 1, -1, 1.45, -1.45]
 /** Time in which speed comes and goes [s]. */
 const EASE = 0.1
 /** Time in which a view that others left tilted comes level while one looks around [s]. */
@@ -49,6 +51,8 @@ export class Explorer {
   private readonly camera: PerspectiveCamera
   private readonly input: ExplorerInput
   private readonly groundAt: (position: Vector3) => number
+  private readonly footingAt: (position: Vector3) => number
+  private readonly waterAt: (position: Vector3) => number
   private readonly upAt: (position: Vector3, target: Vector3) => Vector3
   private readonly heightAt: (position: Vector3) => number
   private readonly pole: Vector3
@@ -66,6 +70,8 @@ export class Explorer {
     this.camera = camera
     this.input = new ExplorerInput(canvas)
     this.groundAt = options.groundAt ?? (() => 0)
+    this.footingAt = options.footingAt ?? this.groundAt
+    this.waterAt = options.waterAt ?? (() => -Infinity)
     this.upAt = options.upAt ?? ((_, target) => target.set(0, 1, 0))
     this.metersPerUnit = options.metersPerUnit ?? 1
     this.heightAt = options.heightAt ?? (position => position.y * this.metersPerUnit)
@@ -179,7 +185,8 @@ export class Explorer {
 
   private endOf(position: Vector3, rotation: Quaternion) {
     const height = this.heightAt(position)
-    return { position: position.clone(), rotation: rotation.clone(), height }
+    const up = this.upAt(position, new Vector3())
+    return { position: position.clone(), rotation: rotation.clone(), up, height }
   }
 
   private axesAt(position: Vector3): LocalAxes {
@@ -244,16 +251,33 @@ export class Explorer {
     const level = this.axes.ahead(heading, after).multiplyScalar(wish.z)
     level.addScaledVector(this.axes.ahead(heading + Math.PI / 2, axis), wish.x)
     if (this.onFoot(level, seconds)) return
-    this.accelerate(level.multiplyScalar(WALKING_SPEED * this.factor), seconds)
-    before.copy(position)
     const eye = this.heightAt(position)
-    this.moveBy(seconds)
-    const distance = position.distanceTo(before) * this.metersPerUnit
-    if (walk.isBlocked(eye, this.groundAt(position), distance)) {
-      position.copy(before)
-      this.velocity.set(0, 0, 0)
+    const [feet, water] = [eye - EYE_HEIGHT, this.waterAt(position)]
+    const speed = WALKING_SPEED * this.factor * wading(feet, water)
+    this.accelerate(level.multiplyScalar(speed), seconds)
+    this.slip(walk, eye, seconds)
+    const ground = footing(this.footingAt(position), this.waterAt(position))
+    const isJumping = this.input.isJumping && !isDeep(feet, water)
+    this.setHeight(walk.advance(eye, ground, isJumping, seconds))
+  }
+
+  /** Moves along the velocity, or along a wall that is in the way. */
+  private slip(walk: Walk, eye: number, seconds: number): void {
+    if (this.velocity.lengthSq() === 0) return
+    const { position } = this.camera
+    const [start, rotation] = [position.clone(), this.camera.quaternion.clone()]
+    const velocity = this.velocity.clone()
+    const { up } = this.axesAt(position)
+    const vertical = up.clone()
+    for (const angle of SLIPS) {
+      this.velocity.copy(velocity).applyAxisAngle(vertical, angle).multiplyScalar(Math.cos(angle))
+      this.moveBy(seconds)
+      const distance = position.distanceTo(start) * this.metersPerUnit
+      if (!walk.isBlocked(eye, this.footingAt(position), distance)) return
+      position.copy(start)
+      this.camera.quaternion.copy(rotation)
     }
-    this.setHeight(walk.advance(eye, this.groundAt(position), this.input.isJumping, seconds))
+    this.velocity.set(0, 0, 0)
   }
 
   /** Has the walker walk along a level vector, if there is one and the ground is near; false if not. */

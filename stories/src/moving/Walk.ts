@@ -12,6 +12,22 @@ const STEEPEST = 1.5
 export const HIGH = 20
 const SINKING = 1.5
 
+/** Depth of the feet of one who floats, and share of the speed that is left there: the eyes are well above the water [m]. */
+const AFLOAT = 1
+const SWIMMING = 0.4
+/** Depth of water from which on one cannot jump [m]. */
+const DEEP = 0.5
+
+/** Height of the feet of one who stands on the ground, or floats in deep water over it [m]. */
+export const footing = (ground: number, water: number): number => Math.max(ground, water - AFLOAT)
+
+/** Share of the speed that water leaves to one whose feet are at a height. @param feet - [m]. */
+export const wading = (feet: number, water: number): number =>
+  1 - (1 - SWIMMING) * Math.min(Math.max((water - feet) / AFLOAT, 0), 1)
+
+/** True where water is too deep to jump out of. @param feet - [m]. */
+export const isDeep = (feet: number, water: number): boolean => water - feet > DEEP
+
 /** The vertical part of walking: gravity, jumps and the ground under the feet. */
 export class Walk {
   /** True while the feet are on the ground. */

@@ -95,3 +95,17 @@ export const shaftViews = {
     land: 'hills'
   }
 } satisfies Record<string, ShaftView>
+
+export type ShaftViewName = keyof typeof shaftViews
+
+/** Air and light of a view, as its still has them. */
+export function argsOf(name: ShaftViewName) {
+  const { turbidity, light }: ShaftView = shaftViews[name]
+  return { turbidity, ...light }
+}
+
+/** Text that is the same for views of one scene: with the same land, clouds, fog and source of light. */
+export function sceneOf(name: ShaftViewName): string {
+  const { land, clouds, fog, isMoonlit }: ShaftView = shaftViews[name]
+  return JSON.stringify([land, clouds, fog, isMoonlit])
+}

@@ -29,6 +29,7 @@ import {
 import { pass, uniform } from 'three/tsl'
 import { MeshStandardNodeMaterial, RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
+import type { Obstacle } from '../moving/obstacles'
 import { createHouses, type Houses } from './houses'
 import { StreetMirror } from './StreetMirror'
 
@@ -182,6 +183,11 @@ export class Street {
   /** Turns the camera about its place [°]. */
   look(heading: number, pitch: number): void {
     this.camera.rotation.set(MathUtils.degToRad(pitch), -MathUtils.degToRad(heading), 0, 'YXZ')
+  }
+
+  /** Walls along the street, for those on foot. */
+  get obstacles(): readonly Obstacle[] {
+    return this.#houses.obstacles
   }
 
   render(): void {

@@ -11,6 +11,7 @@ import {
 import { wetSurface, type SurfaceWater } from '@welkin/atmosphere'
 import { float } from 'three/tsl'
 import { MeshStandardNodeMaterial } from 'three/webgpu'
+import type { Obstacle } from '../moving/obstacles'
 import { randomSequence } from '../random'
 
 /** Luminous intensity of a street lamp [cd], 6,200 lm of sodium light to all sides; radius and height of its globe [m]. */
@@ -25,6 +26,8 @@ const GLASS = LAMP / (Math.PI * GLOBE ** 2)
 export interface Houses {
   readonly object: Group
   readonly ground: Mesh
+  /** Walls, for those on foot. */
+  readonly obstacles: readonly Obstacle[]
   readonly lamps: readonly PointLight[]
   readonly globes: readonly Mesh[]
   /** @param share - Part of the lamps' light, in [0, 1]. */
@@ -45,6 +48,7 @@ export function createHouses(
   const glow: { material: MeshStandardMaterial; luminance: number }[] = []
   const lamps: PointLight[] = []
   const globes: Mesh[] = []
+  const obstacles: Obstacle[] = []
   const add = (mesh: Mesh, x: number, y: number, z: number): Mesh => {
     mesh.position.set(x, y, z)
     mesh.castShadow = mesh.receiveShadow = true
@@ -66,6 +70,7 @@ export function createHouses(
     const color = ['#6d6255', '#5b4a40', '#767068', '#4d4a46'][Math.floor(4 * random())]
     const walls = new MeshStandardMaterial({ color, roughness: 0.85 })
     add(new Mesh(new BoxGeometry(8, height, width), walls), x, height / 2, z)
+    obstacles.push({ x, z, width: 8, depth: width, top: height })
     const roof = new CylinderGeometry(0.1, 4.6, 2.6, 4, 1).rotateY(Math.PI / 4)
     add(new Mesh(roof.scale(1.3, 1, (1.35 * width) / 8), roofs), x, height + 1.3, z)
     for (let n = 0; n < 6; n++) {
@@ -93,6 +98,7 @@ export function createHouses(
     ground: street,
     lamps,
     globes,
+    obstacles,
     light(share, luminanceScale) {
       for (const { material, luminance } of glow) {
         material.emissiveIntensity = share * luminance * luminanceScale

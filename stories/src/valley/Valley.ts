@@ -84,6 +84,10 @@ const TWILIGHT = -20
 const NIGHT_COMPENSATION = 0.9
 const NIGHT = -10
 
+/** Darker pictures from above the clouds, where all that one sees is bright [EV], and heights between which they become so [m]. */
+const ABOVE_COMPENSATION = -0.2
+const ABOVE = [1500, 3500] as const
+
 /** Turn of the sun after which the sky that the lake mirrors beside the picture is drawn anew [degrees]. */
 const MIRRORED_TURN = 1
 
@@ -234,6 +238,7 @@ export class Valley {
     this.#water.mesh.visible = water
     this.#mirror.isOn = reflections
     this.#falling.wets = this.#state.wetGround
+    this.#falling.drops.strength = Number(this.#state.rainbow)
     const keys = ['trees', 'village', 'water', 'quality'] as const
     if (keys.some(key => this.#state[key] !== before[key])) this.#redrawShadows()
     this.#applyWeather(atOnce)
@@ -297,7 +302,9 @@ export class Valley {
     const dusk = MathUtils.clamp((from - elevation) / (from - to), 0, 1)
     const share = lamps ? dusk : 0
     const night = MathUtils.smoothstep(-elevation, 0, -NIGHT)
-    this.exposure.compensation = MathUtils.lerp(this.weather.exposure, NIGHT_COMPENSATION, night)
+    const above = MathUtils.smoothstep(this.camera.position.y, ...ABOVE)
+    const day = this.weather.exposure + above * ABOVE_COMPENSATION
+    this.exposure.compensation = MathUtils.lerp(day, NIGHT_COMPENSATION, night)
     const isNight = elevation < NIGHT_LIGHTS
     const isMoonlit = this.#moonShadow.update(this.camera, isNight && moonlight)
     for (const light of this.#moonlights) setLit(light, isMoonlit)

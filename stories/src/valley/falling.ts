@@ -10,6 +10,7 @@ import type { Atmosphere } from '@welkin/atmosphere'
 import { precipitationShafts } from '@welkin/clouds'
 import type { Light, PerspectiveCamera } from 'three'
 import type { Node, TextureNode } from 'three/webgpu'
+import { FadingBow } from './FadingBow'
 import type { Weather } from './weather'
 
 /** Seconds of drying and wetting in one second on the clock. */
@@ -21,7 +22,7 @@ const FALLEN = { rain: 0.5, snow: 12 }
 
 /** Rain and snow of the valley: under its clouds, around the camera, and on the ground. */
 export class ValleyPrecipitation {
-  readonly drops = raindrops({ rate: 12 }) // rainbows
+  readonly drops = new FadingBow(raindrops({ rate: 12 })) // rainbows
   readonly shafts = precipitationShafts({ drops: this.drops }) // to `clouds`
   readonly water = new SurfaceWater() // to what gets wet
   #falling: readonly Precipitation[] = []

@@ -10,6 +10,7 @@ const SWITCHED = {
   shafts: 'light shafts',
   haze: 'haze',
   precipitation: 'rain and snow',
+  rainbow: 'rainbow',
   wetGround: 'wet ground and snow cover',
   moon: 'moon',
   moonlight: 'moonlight on the land',

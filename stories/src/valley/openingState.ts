@@ -17,6 +17,7 @@ export const openingState = {
   haze: true,
   mist: true,
   precipitation: true,
+  rainbow: true,
   wetGround: true,
   flashes: false,
   moon: true,

@@ -96,11 +96,11 @@ export const doors = (): { x: number; z: number }[] =>
     z: z + (depth / 2 + 1.2) * Math.cos(turn)
   }))
 
-/** Outlines of the houses and the church on the map. */
-export const outlines = (): Outline[] => [
+/** Outlines of the houses and the church on the map, and heights of their walls [m]. */
+export const outlines = (): (Outline & { readonly height: number })[] => [
   ...housesAbout(VILLAGE),
-  { ...VILLAGE, width: 7, depth: 7, turn: 0 },
-  { x: VILLAGE.x, z: VILLAGE.z + 14, width: 11, depth: 22, turn: 0 }
+  { ...VILLAGE, width: 7, depth: 7, turn: 0, height: 22 },
+  { x: VILLAGE.x, z: VILLAGE.z + 14, width: 11, depth: 22, turn: 0, height: 9 }
 ]
 
 /** Part of the houses whose upper floor is of timber. */

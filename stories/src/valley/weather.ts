@@ -57,9 +57,9 @@ export const weathers = {
     turbidity: 2.5,
     mist: 0,
     ...highest,
-    exposure: -0.2
+    exposure: -0.3
   },
-  mist: { cumulus: 0, deck: 0, cirrus: 0, turbidity: 3, mist: 1, ...calm },
+  mist: { cumulus: 0, deck: 0, cirrus: 0, turbidity: 3, mist: 1, ...calm, exposure: -0.15 },
   overcast: { cumulus: 0.15, deck: 1, cirrus: 0, turbidity: 4, mist: 0, ...calm },
   shower: {
     cumulus: 0,
@@ -78,7 +78,8 @@ export const weathers = {
     turbidity: 3,
     mist: 0,
     ...calm,
-    snow: 1.5
+    snow: 1.5,
+    exposure: -0.1
   },
   storm: {
     cumulus: 0.45,

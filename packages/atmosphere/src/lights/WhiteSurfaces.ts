@@ -8,6 +8,7 @@ import {
   positionLocal,
   positionView,
   positionWorld,
+  screenUV,
   vec3,
   vec4
 } from 'three/tsl'
@@ -48,6 +49,18 @@ export class WhiteSurfaces {
       new Float32BufferAttribute([-1, 3, 0, -1, -1, 0, 3, -1, 0], 3)
     )
     geometry.setAttribute('normal', new Float32BufferAttribute([0, 0, 1, 0, 0, 1, 0, 0, 1], 3))
+    const contextNode = overrideNodes(
+      [
+        [positionLocal, position],
+        [positionView, position],
+        [positionWorld, modelWorldMatrix.mul(vec4(position, 1)).xyz]
+      ],
+      null,
+      'fragment'
+    )
+    // Normals that are given may be a texture's, which asks for these.
+    const getAttribute = (attribute: string): Node | null => (attribute === 'uv' ? screenUV : null)
+    Object.assign(contextNode.value as object, { getAttribute })
     Object.assign(this.#material, {
       name,
       blending: NoBlending,
@@ -58,15 +71,7 @@ export class WhiteSurfaces {
       vertexNode: vec4(positionGeometry.xy, 0, 1),
       colorNode: vec3(1),
       normalNode: normal,
-      contextNode: overrideNodes(
-        [
-          [positionLocal, position],
-          [positionView, position],
-          [positionWorld, modelWorldMatrix.mul(vec4(position, 1)).xyz]
-        ],
-        null,
-        'fragment'
-      )
+      contextNode
     })
     this.#triangle = new Mesh(geometry, this.#material)
     this.#triangle.frustumCulled = false
