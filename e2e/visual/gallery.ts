@@ -15,7 +15,7 @@ import { shadowSizePlugin } from '../harness/shadow-size'
 const viewport = { width: 320, height: 180 }
 const LARGEST = 12_000
 /** Longest that a picture may take [s]. */
-const limitSeconds = 580
+const limitSeconds = 300
 
 const storiesFolder = fileURLToPath(new URL('../../stories/src', import.meta.url))
 const pictures = fileURLToPath(new URL('../../stories/pictures', import.meta.url))

@@ -103,7 +103,7 @@ export class GroundCamera {
 
   /** Draws the frames before a still, each with all of its ground. */
   async warmUp(renderer: WebGPURenderer, draw: () => void): Promise<void> {
-    for (let i = 0; this.explorer === undefined && i < Number(localStorage.getItem("n") ?? 40); i++) {
+    for (let i = 0; this.explorer === undefined && i < WARM_UP_FRAMES; i++) {
       this.#camera.updateMatrixWorld()
       this.#terrain.update(renderer, this.#camera, Infinity)
       draw()

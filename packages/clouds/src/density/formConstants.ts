@@ -164,7 +164,7 @@ export const columnForm = {
    */
   slantAspect: 5,
   /** Share of that in storms, whose anvils are flat [–]. Greater: storms are too many and too bright from afar, aslant. */
-  slantOfStorms: 0,
+  slantOfStorms: 0.1,
   /**
    * Factor of the share of columns that reach a height [–]. Smaller: clouds are darker from afar (*World
    * clouds*).
@@ -183,5 +183,5 @@ export const columnForm = {
    */
   inside: 1.25,
   /** Factor of the same in storms, of which much is in the shade of their anvils [–]. Greater: storms are too bright from afar. */
-  insideStorms: 0.05
+  insideStorms: 0.75
 } as const

@@ -78,9 +78,9 @@ export const stormFibres = {
   outwards: 24_000,
   upwards: 4000,
   /** Weights of coarse and fine billows in them [–]. Greater fine ones: grain at rims. */
-  weights: [0.7, 0.5],
+  weights: [0.7, 0.55],
   /** Levels of detail by which they are looked up sharper than billows are [octaves]. Greater: grain at rims; smaller: wool. */
-  sharper: 0.25,
+  sharper: 0.5,
   /** Displacement of the rim per unit of them, and at most, in radii of the anvil [–]. 0: a rim like a tower's; greater: loose rags. */
   fray: 0.1,
   mostFray: 0.2,

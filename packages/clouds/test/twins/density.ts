@@ -32,7 +32,7 @@ import { ENCODING_SCALE } from '../../src/noise/noiseRecipes'
 import { NOISE_SIZE } from '../../src/noise/noiseSizes'
 import type { Vec3Array } from './noise'
 import type { NoiseTextures } from './noiseTextures'
-import { frayedDistance, stormAround, stormStrength, type StormThere } from './storm'
+import { fibreLevel, frayedDistance, stormAround, stormStrength, type StormThere } from './storm'
 import { cycloneAround, frontsAndBelts } from './weatherSystems'
 
 /** State of a field of clouds: what a `CloudField` tells its shaders. */
@@ -376,7 +376,7 @@ export function sampleLayer(
     ...weather.storm,
     unfrayed: weather.storm.distance,
     distance: frayedDistance(layer, weather.storm, height, place =>
-      decoded(noise.sample('shape', place, level))
+      decoded(noise.sample('shape', place, fibreLevel(layer, weather.storm!.radius, level)))
     )
   }
   const parts = storm

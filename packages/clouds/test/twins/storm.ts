@@ -9,6 +9,7 @@ import {
   stormNearness,
   stormRoughness
 } from '../../src/layers/meanColumn'
+import { layerPeriods } from '../../src/layers/layerUniforms'
 import { stormCell } from '../../src/layers/storms'
 import { hashCell, type Vec3Array } from './noise'
 
@@ -142,6 +143,13 @@ export function stormAround(
 /** A storm around a place, and the radius that it has there [m]. */
 export interface StormThere extends StormAround {
   readonly radius: number
+}
+
+/** Level of detail at which fibres are looked up, by that of billows: their own period is another. */
+export function fibreLevel(layer: CloudLayerParameters, radius: number, level: number): number {
+  const { around, upwards, sharper } = stormFibres
+  const period = Math.min(radius / around, upwards) / layerPeriods(layer).shape
+  return Math.max(level - Math.log2(period) - sharper, 0)
 }
 
 /**

@@ -5,6 +5,19 @@ import type { Float } from '../../tsl-types'
 import type { LayerNodes } from './layer'
 import { isStorm } from './storm'
 
+/** A layer at a place. */
+export interface LayerSample {
+  /** Extinction [1/m], at least 0. */
+  readonly extinction: Float
+  /**
+   * Strength of the column with all its billows, less what the height needs: cloud is where it is above 0
+   * [–]. Far away, where single clouds are not resolved, at least 0.
+   */
+  readonly strength: Float
+  /** `surfaceStrength` [–]. */
+  readonly surface: Float
+}
+
 /**
  * Strength over which density rises at edges [–]. Bases, where clouds form and decay, are softer than tops.
  *
@@ -48,4 +61,14 @@ export const crumbDensity = (column: Float, needed: Float): Float => {
     .mul(1 - crumb)
     .add(crumb)
     .toConst()
+}
+
+/**
+ * Strength by which edges are found between samples [–]: where it is 0, a cloud begins that is even, and as deep as this one. In storms that is half an
+ * edge behind: those of ice are thicker than a mean free path.
+ */
+export function surfaceStrength(layer: LayerNodes, strength: Float, edge: Float): Float {
+  if (layer.hasStorms === false) return strength
+  const inside = strength.mul(0.5).max(strength.sub(edge.mul(0.5)))
+  return select(isStorm(layer).and(strength.greaterThan(0)), inside, strength).toConst()
 }

@@ -4,12 +4,12 @@ import type { CloudField } from '../CloudField'
 import { billowForm } from '../formConstants'
 import type { Bool, Float, Vec3 } from '../../tsl-types'
 import { billows, bulge, detail, fineShare, MOST_DETAIL, topBillows } from './billows'
-import { crumbDensity, densityOf, edgeAt } from './density'
+import { crumbDensity, densityOf, edgeAt, surfaceStrength, type LayerSample } from './density'
 import { bendAtHeight, billowStrength, densityAtHeight, neededStrength } from './heightForm'
 import { heightIn, type LayerNodes } from './layer'
 import { resolutionAt, type Resolution } from './resolution'
 import { footprintOf, type CloudSample } from './sample'
-import { ifStorm, isStorm } from './storm'
+import { ifStorm } from './storm'
 import type { StormNearby } from './stormNearby'
 import { stormStrength } from './stormStrength'
 import { columnStrength } from './strength'
@@ -20,22 +20,6 @@ import {
   type PackedBackground,
   type WeatherBackground
 } from './weatherBackground'
-
-/** A layer at a place. */
-export interface LayerSample {
-  /** Extinction [1/m], at least 0. */
-  readonly extinction: Float
-  /**
-   * Strength of the column with all its billows, less what the height needs: cloud is where it is above 0
-   * [–]. Far away, where single clouds are not resolved, at least 0.
-   */
-  readonly strength: Float
-  /**
-   * Strength by which the edge is found between samples: where it is 0, an even cloud begins that hides as much as this one, whose edge in
-   * ice is thicker than a mean free path [–].
-   */
-  readonly surface: Float
-}
 
 /** Options of {@link sampleLayer}. */
 export interface SampleOptions {
@@ -124,13 +108,6 @@ function bodyAt(
  */
 const CLEAR_STRENGTH = -4
 
-/** `LayerSample.surface`: half of an edge of storms is clear, half as dense as behind it. */
-function surfaceOf(layer: LayerNodes, strength: Float, edge: Float): Float {
-  if (layer.hasStorms === false) return strength
-  const inside = strength.mul(0.5).max(strength.sub(edge.mul(0.5)))
-  return select(isStorm(layer).and(strength.greaterThan(0)), inside, strength).toConst()
-}
-
 /**
  * One layer at places near each other, in the weather on large scales around them: their texture reads do
  * not wait for each other.
@@ -208,7 +185,7 @@ export function sampleLayerAt(
   return found.map(({ density, strength }, i) => ({
     extinction: layer.density.mul(density).toConst(),
     strength,
-    surface: surfaceOf(layer, strength, bodies[i].edge)
+    surface: surfaceStrength(layer, strength, bodies[i].edge)
   }))
 }
 

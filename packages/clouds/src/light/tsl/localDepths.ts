@@ -17,7 +17,7 @@ const LEAST_PROBED = 60
 const MOST_PROBED = 600
 
 /**
- * The same at most in tall clouds, over their layer's thickness: where no shadow map is, clouds go on beyond as at the last probe. 0: anvils are
+ * Most of that in tall clouds, over their layer's thickness: where no shadow map is, clouds go on beyond as at the last probe. 0: anvils are
  * dark from orbit, as if they went on up to their layer's top.
  */
 const MOST_OF_TALL = 0.12
