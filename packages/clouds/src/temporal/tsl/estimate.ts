@@ -10,7 +10,6 @@ import type { Neighbourhood } from './varianceClip'
 import {
   inMarched,
   OWN_SAMPLE,
-  sharedWeightOf,
   weightOf,
   type CellPosition,
   type CornerKernel,
@@ -39,8 +38,8 @@ export interface Estimate extends Neighbourhood {
   readonly weight: Float
   /** True at a marched pixel. */
   readonly isOwn: Bool
-  /** Weight of the nearest marched pixel as a sample of its neighbours, in [0, 1]. */
-  readonly shared: Float
+  /** Square of the distance to the nearest marched pixel that counts [marched pixels²]. */
+  readonly nearest: Float
 }
 
 /** Variables that an estimate is gathered in. */
@@ -150,6 +149,6 @@ export function estimate(
     distance,
     weight: select(nearest.lessThan(NO_CORNER), weight.max(LEAST_WEIGHT), 0).toConst(),
     isOwn,
-    shared: sharedWeightOf(viewRays, nearest)
+    nearest
   }
 }

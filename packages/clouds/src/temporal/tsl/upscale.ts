@@ -36,6 +36,12 @@ const SHARED_SAMPLES = 2
 const OWN_SAMPLES = 8
 
 /**
+ * Square of the distance d at which a sample is of no use to its neighbours, to which it is worth (1 − d²/s)² [pixels²]. Greater: clouds
+ * blur for seconds after a change (*Cumulus*); smaller: grain (*Inside a cloud*).
+ */
+const SHARED_SQUARE = 3
+
+/**
  * Standard deviation of a cell's brightness, in parts of it, and three times that of its transmittance, below which clouds have nothing that
  * a bilinear look-up would blur [–]. Greater: faster (*Inside a cloud*), and thin clouds blur while they move.
  */
@@ -69,9 +75,10 @@ function accumulate(
     // A pixel with samples enough of its own learns nothing from its neighbours'.
     const youth = history.samples
       .sub(OWN_SAMPLES)
-      .mul(1 / (SHARED_SAMPLES - OWN_SAMPLES))
+      .div(SHARED_SAMPLES - OWN_SAMPLES)
       .clamp()
-    const weight = select(isOwn, now.weight, 0).max(now.shared.mul(youth)).toConst()
+    const near = now.nearest.mul(frame.block).mul(frame.block).div(-SHARED_SQUARE).add(1).max(0)
+    const weight = select(isOwn, now.weight, 0).max(near.mul(near).mul(youth)).toConst()
     const all = history.samples.add(weight).toConst()
     const share = weight.div(all).toConst() as Float
     light.assign(mix(clipped, now.light, share))

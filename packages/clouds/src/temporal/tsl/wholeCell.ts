@@ -21,12 +21,6 @@ const WEIGHT_SHARPNESS = 5
  */
 export const OWN_SAMPLE = 0.5
 
-/**
- * Square of the distance at which a marched pixel is of no use to its neighbours [pixels²]. Greater: clouds blur for seconds after a
- * change (*Cumulus*); smaller: grain (*Inside a cloud*).
- */
-const SHARED_SQUARE = 3
-
 /** Position of a pixel among marched ones. */
 export interface CellPosition {
   /** Index of the cell's first corner. */
@@ -73,17 +67,6 @@ export interface WholeCell {
 /** Weight of the nearest marched pixel, by the square of its distance [marched pixels²]. */
 export const weightOf = ({ frame }: FrameInputs, nearest: Float): Float =>
   nearest.mul(frame.block).mul(frame.block).mul(-WEIGHT_SHARPNESS).exp().toConst()
-
-/** Weight of the nearest marched pixel as a sample of its neighbours, by the same: (1 − d²/{@link SHARED_SQUARE})². */
-export function sharedWeightOf({ frame }: FrameInputs, nearest: Float): Float {
-  const part = nearest
-    .mul(frame.block)
-    .mul(frame.block)
-    .mul(-1 / SHARED_SQUARE)
-    .add(1)
-  const least = part.max(0).toConst()
-  return least.mul(least).toConst()
-}
 
 /** Place in the marched picture of a place among its pixels. */
 export const inMarched = ({ frame }: FrameInputs, pixel: Vec2): Vec2 =>
