@@ -23,7 +23,7 @@ import { cloudAirShadow, clouds, cloudShadow, cloudSkyLight } from '@welkin/clou
 import type { CloudLayers, CloudQuality, CloudQualityName, CloudsNode } from '@welkin/clouds'
 import type { PerspectiveCamera, Scene } from 'three'
 import type { CSMShadowNode } from 'three/addons/csm/CSMShadowNode.js'
-import { BasicShadowFilter, Fn, isBackgroundDepth, pass, shadow, vec4 } from 'three/tsl'
+import { BasicShadowFilter, isBackgroundDepth, pass, shadow, vec4 } from 'three/tsl'
 import type { Node, PassNode, TextureNode } from 'three/webgpu'
 import { Cascades } from './valley/Cascades'
 import { SKY_DEPTH } from './valley/LakeMirror'
@@ -62,13 +62,9 @@ export function withDepth(picture: Node, scenePass: PassNode): PictureNode {
 
 /** Colour of a pass where it has drawn, elsewhere nothing: its texture need not be cleared, which would cost each pixel. */
 export function drawnOf(scenePass: PassNode): Node<'vec4'> {
-  const texture = scenePass.getTextureNode() as unknown as Node<'vec4'>
+  const color = scenePass.getTextureNode() as unknown as Node<'vec4'>
   const { r } = scenePass.getTextureNode('depth') as unknown as Node<'vec4'>
-  return Fn(() => {
-    // Read before the depth is known: a pixel waits for both at once.
-    const color = texture.toConst()
-    return isBackgroundDepth(r).select(vec4(0), color)
-  })()
+  return isBackgroundDepth(r).select(vec4(0), color)
 }
 
 /** All of the sky by day and night, with clouds that cast shadows on the ground and in the air. */

@@ -59,7 +59,7 @@ export const levelOf = (across: Node<'vec2'>, along: Node<'vec2'>): Node<'float'
     .mul(OCTAVES_SIDE ** 2)
     .log2()
     .mul(0.5)
-    .toConst() as Node<'float'>
+    .toConst()
 
 /**
  * Crowns in woods, clumps of grass elsewhere: height about 0, and for crowns its differences to the pixels at the right and below, since those

@@ -29,10 +29,20 @@ export function cloudInputs(
   return [...forms, ...light.flatMap(({ value }) => value.toArray()), ambient.value, lightVersion]
 }
 
-/** Difference of two vectors over the greatest component of either, in [0, 2]. */
-function relativeChange(a: readonly number[], b: readonly number[]): number {
-  const most = Math.max(...a.map(Math.abs), ...b.map(Math.abs))
-  return most && Math.max(...a.map((value, i) => Math.abs(value - b[i]))) / most
+/** Difference of some numbers of two lists over the greatest of either, in [0, 2]. Called often: it makes no lists. */
+function relativeChange(
+  a: readonly number[],
+  b: readonly number[],
+  first: number,
+  length = 1
+): number {
+  let most = 0
+  let change = 0
+  for (let i = first; i < first + length; i++) {
+    most = Math.max(most, Math.abs(a[i]), Math.abs(b[i]))
+    change = Math.max(change, Math.abs(a[i] - b[i]))
+  }
+  return most && change / most
 }
 
 /**
@@ -44,16 +54,16 @@ function relativeChange(a: readonly number[], b: readonly number[]): number {
  */
 export function formChange(now: readonly number[], before: readonly number[]): number {
   let most = 0
-  for (let i = 0; i < before.length; i += LAYER_NUMBERS) {
-    const [a, b] = [now, before].map(forms => forms.slice(i, i + LAYER_NUMBERS))
-    const [base, perThickness, coverage] = a
+  for (let first = 0; first < before.length; first += LAYER_NUMBERS) {
+    const coverage = first + 2
     // What covers nothing is not seen to change.
-    if (Math.max(coverage, b[2]) === 0) continue
-    most = Math.max(most, Math.abs(base - b[0]) * perThickness, Math.abs(coverage - b[2]))
+    if (Math.max(now[coverage], before[coverage]) === 0) continue
+    const rise = Math.abs(now[first] - before[first]) * now[first + 1]
+    most = Math.max(most, rise, Math.abs(now[coverage] - before[coverage]))
     // Thickness, density and the period of the shape each by itself; all others with those of their vector, since some are often 0.
-    for (const k of [1, 3, 7]) most = Math.max(most, relativeChange([a[k]], [b[k]]))
+    for (const k of [1, 3, 7]) most = Math.max(most, relativeChange(now, before, first + k))
     for (let k = 4; k < LAYER_NUMBERS; k += 4) {
-      most = Math.max(most, relativeChange(a.slice(k, k + 4), b.slice(k, k + 4)))
+      most = Math.max(most, relativeChange(now, before, first + k, 4))
     }
   }
   return most
