@@ -15,6 +15,7 @@ import { GroundCamera } from './terrain/GroundCamera'
 import { groundHandle } from './terrain/groundHandle'
 import type { GroundView } from './terrain/viewAlong'
 import { askServer } from './tileServer'
+import { villageTops } from './valley/footing'
 import { createVillage } from './valley/village'
 
 /** Middle of the made-up village, on level ground between two ridges [°]. */
@@ -194,7 +195,8 @@ export async function createRealHeights(
   const village = isLocal ? createVillage(groundAt, { x: 0, z: 0 }) : undefined
   if (village !== undefined) scene.add(village.object)
 
-  const ground = new GroundCamera(camera, canvas, terrain, args.frame)
+  const roofAt = village && villageTops(groundAt, { x: 0, z: 0 })
+  const ground = new GroundCamera(camera, canvas, terrain, args.frame, roofAt)
   const overlay = args.frame ? undefined : overlayOn(canvas)
   if (overlay !== undefined) overlay.textContent = note
 

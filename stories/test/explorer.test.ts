@@ -258,6 +258,37 @@ describe('on foot', () => {
     expect(camera.position.x).toBeLessThan(4.5)
     expect(camera.position.y).toBeLessThan(2.5)
   })
+
+  it('stops at walls that the terrain does not know, and gets out of them', () => {
+    const radius = 6.4e6
+    const worldToECEF = new Matrix4().makeTranslation(0, radius, 0)
+    const ground: Ground = {
+      atmosphere: { ellipsoid: new Ellipsoid(radius), worldToECEF },
+      seaLevel: -Infinity,
+      source: {
+        lowest: 0,
+        highest: 1,
+        variation: () => 0,
+        sampleAt(_, target) {
+          target.height = 0
+          return target
+        }
+      }
+    }
+    const footingAt = ({ x }: Vector3): number => (Math.abs(x - 6) < 2 ? 5 : 0)
+    const walker = new Walker(ground)
+    const { camera, explorer, press, run } = explore({ footingAt, walker }, 1.7)
+    press('KeyF')
+    run(1)
+    press('KeyD')
+    run(4)
+    expect(camera.position.x).toBeGreaterThan(3.8)
+    expect(camera.position.x).toBeLessThanOrEqual(4)
+    expect(camera.position.y).toBeCloseTo(1.7, 2)
+    explorer.state = { x: 6, y: 1.7, z: 0, heading: 0, pitch: 0, walking: 1 }
+    run(2)
+    expect(camera.position.x).toBeGreaterThan(8)
+  })
 })
 
 describe('flyTo', () => {

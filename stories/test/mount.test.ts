@@ -23,7 +23,7 @@ function element(): Record<string, unknown> {
   })
 }
 
-/** What lies over the canvas. */
+/** Pictures over the canvas. */
 const covers: unknown[] = []
 const page = { body: { dataset: {} }, createElement: () => element() }
 

@@ -290,12 +290,24 @@ export class Explorer {
     if (!position.equals(this.eye)) walker.moveTo(position)
     walker.speed = WALKING_SPEED * this.factor
     const up = this.upAt(position, before)
+    const start = position.clone()
     walker.update(level, this.input.isJumping, seconds)
     walker.eyePosition(position)
+    // Walls are no part of the walker's ground; out of one in which one has come down, one may walk.
+    if (this.isInWall(position) && !this.isInWall(start)) {
+      position.copy(start)
+      walker.moveTo(start)
+    }
     this.eye.copy(position)
     quaternion.setFromUnitVectors(up, this.upAt(position, axis))
     camera.quaternion.premultiply(quaternion)
     return true
+  }
+
+  /** True where something that is no ground is higher than one's feet. */
+  private isInWall(eye: Vector3): boolean {
+    const footing = this.footingAt(eye)
+    return footing > this.groundAt(eye) && footing > this.heightAt(eye) - EYE_HEIGHT
   }
 
   /** Moves along the velocity; the view turns with up. */

@@ -32,7 +32,8 @@ export class GroundCamera {
     camera: PerspectiveCamera,
     canvas: HTMLCanvasElement,
     terrain: Terrain,
-    isStill: boolean
+    isStill: boolean,
+    roofAt: (place: Vector3) => number = () => -Infinity
   ) {
     this.#camera = camera
     this.#terrain = terrain
@@ -42,7 +43,8 @@ export class GroundCamera {
     const upAt = (place: Vector3, target: Vector3): Vector3 => this.#upAt(place, target)
     const heightAt = (place: Vector3): number => this.heightAt(place)
     const walker = new Walker(terrain)
-    const options = { upAt, heightAt, groundAt, walker }
+    const footingAt = (place: Vector3): number => Math.max(groundAt(place), roofAt(place))
+    const options = { upAt, heightAt, groundAt, footingAt, walker }
     this.explorer = isStill ? undefined : new Explorer(camera, canvas, options)
   }
 

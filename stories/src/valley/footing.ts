@@ -7,6 +7,24 @@ import { outlines } from './village'
 /** Height of a roof's middle over its walls [m]. */
 const ROOF = 1.6
 
+/**
+ * Height of the roof at a place of a village: −∞ beside its houses [m].
+ *
+ * @param heightAt - Height of the ground [m].
+ * @param middle - Place of the church, default the valley's [m].
+ */
+export function villageTops(
+  heightAt: (x: number, z: number) => number,
+  middle?: Readonly<Record<'x' | 'z', number>>
+): ReturnType<typeof topOf> {
+  return topOf(
+    outlines(middle).map(({ x, z, width, depth, turn, height }): Obstacle => {
+      const top = heightAt(x, z) + height + ROOF
+      return { x, z, width, depth, turn, top }
+    })
+  )
+}
+
 /** Half of a square about the lake outside of which there is no water [m]. */
 const REACH = 2400
 
@@ -18,12 +36,7 @@ const REACH = 2400
 export function valleyFooting(
   isShown: () => { readonly village: boolean; readonly water: boolean }
 ): Required<Pick<ExplorerOptions, 'footingAt' | 'waterAt'>> {
-  const houses = topOf(
-    outlines().map(({ x, z, width, depth, turn, height }): Obstacle => {
-      const top = groundHeight(x, z) + height + ROOF
-      return { x, z, width, depth, turn, top }
-    })
-  )
+  const houses = villageTops(groundHeight)
   return {
     footingAt(position) {
       const ground = groundHeight(position.x, position.z)

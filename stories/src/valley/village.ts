@@ -96,11 +96,17 @@ export const doors = (): { x: number; z: number }[] =>
     z: z + (depth / 2 + 1.2) * Math.cos(turn)
   }))
 
-/** Outlines of the houses and the church on the map, and heights of their walls [m]. */
-export const outlines = (): (Outline & { readonly height: number })[] => [
-  ...housesAbout(VILLAGE),
-  { ...VILLAGE, width: 7, depth: 7, turn: 0, height: 22 },
-  { x: VILLAGE.x, z: VILLAGE.z + 14, width: 11, depth: 22, turn: 0, height: 9 }
+/**
+ * Outlines of the houses and the church on the map, and heights of their walls [m].
+ *
+ * @param middle - Place of the church, default the valley's [m].
+ */
+export const outlines = ({ x, z }: Readonly<Record<'x' | 'z', number>> = VILLAGE): (Outline & {
+  readonly height: number
+})[] => [
+  ...housesAbout({ x, z }),
+  { x, z, width: 7, depth: 7, turn: 0, height: 22 },
+  { x, z: z + 14, width: 11, depth: 22, turn: 0, height: 9 }
 ]
 
 /** Part of the houses whose upper floor is of timber. */
