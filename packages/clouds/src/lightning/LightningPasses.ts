@@ -31,8 +31,10 @@ import {
   type PlacedChannel,
   type StormColumn
 } from './channel'
+import { hazeAt } from './hazeAt'
 import { StormDensity } from './StormDensity'
 import { channelColor } from './tsl/channelColor'
+import { limbDarkening } from './tsl/limbDarkening'
 import { meanInverseSquare } from './tsl/lineLight'
 
 /**
@@ -66,25 +68,7 @@ const DARK = 0.01
 /** Edge of a pixel of the light, in the picture's. Greater: heads with blurred outlines. */
 const LIGHT_PIXEL = 3
 
-/**
- * Radiance of a cloud's surface that is lit from inside, over that of an even one [–]: (1 + 1.5 μ)/2, of which the mean over the light that leaves is 1.
- *
- * @param facing - μ, cosine between the surface's normal and the way to the eye.
- * @see Milne 1930, "Thermodynamics of the stars", Handbuch der Astrophysik 3, §33: limb darkening in Eddington's approximation
- */
-const limbDarkening = (facing: Float): Float => facing.clamp(0, 1).mul(0.75).add(0.5)
-
 const _offset = new Vector3()
-
-/** Scattering by molecules and aerosols at an altitude, 520 nm [1/m]. */
-function hazeAt({ atmosphere }: AtmosphereView, altitude: number): number {
-  const { rayleighScattering, rayleighScaleHeight, mieScattering, mieScaleHeight } =
-    atmosphere.parameters
-  return (
-    rayleighScattering[1] * Math.exp(-altitude / rayleighScaleHeight) +
-    mieScattering[1] * Math.exp(-altitude / mieScaleHeight)
-  )
-}
 
 /** Passes that draw a flash: its light in clouds and in haze, and its channel. */
 export class LightningPasses {
