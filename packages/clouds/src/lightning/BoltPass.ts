@@ -1,4 +1,4 @@
-import { aerialPerspectiveTo, type AtmosphereView } from '@welkin/atmosphere'
+import { aerialPerspectiveTo, tableTarget, type AtmosphereView } from '@welkin/atmosphere'
 import type { Vector3 } from 'three'
 import {
   BufferGeometry,
@@ -9,24 +9,23 @@ import {
   Matrix3,
   Mesh,
   OneFactor,
-  Scene,
-  type RenderTarget
+  RGFormat,
+  Scene
 } from 'three'
-import { Fn, Discard, If, attribute, screenUV, varying, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, Discard, If, attribute, screenUV, texture, varying, vec2, vec3, vec4 } from 'three/tsl'
 import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
 import { select } from '../select'
 import type { CloudsNode } from '../march/CloudsNode'
 import { isDrawnBefore } from '../march/tsl/viewRay'
-import type { Float, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
+import type { Float, LevelTexture, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { matrix3, matrix4, number, vector3 } from '../uniforms'
 import { STORED_POWER, type PlacedChannel } from './channel'
-import { channelColor } from './tsl/channelColor'
 
-/** Deviation of a channel's width in the picture [pixels], whose light has pixels of two. Smaller: steps at its edges. */
-const WIDTH = 1.3
+/** Deviation of a channel's width in the picture [pixels]. Smaller: steps at its edges. */
+const WIDTH = 0.8
 /** Half width of what is drawn of it, and by how much it is drawn beyond the ends of a piece, where the next begins [pixels]. */
 const HALF_WIDTH = 3 * WIDTH
-const BEYOND = 2
+const BEYOND = 1
 /** Greatest luminance over the channel's colour that half floats keep. */
 const GREATEST = 3e4
 /** Part of the distance before a channel over which clouds begin to hide it. Greater: white lines within clouds (*Storm at night*). */
@@ -66,6 +65,9 @@ function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
 /** A channel of lightning as thin bright lines, hidden by what was drawn and dimmed by clouds and air before it. */
 export class BoltPass {
   readonly #clouds: CloudsNode
+  /** Red and blue alone: to clear it costs more than to draw the few pixels of a channel. */
+  readonly #target = tableTarget('Welkin.LightningChannel', 1, 1)
+  readonly #texture: LevelTexture<Vec2>
   readonly #scene = new Scene()
   readonly #material: NodeMaterial
   readonly #mesh: Mesh
@@ -81,6 +83,8 @@ export class BoltPass {
 
   constructor(clouds: CloudsNode) {
     this.#clouds = clouds
+    this.#target.texture.format = RGFormat
+    this.#texture = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
     this.#material = this.#makeMaterial()
     this.#mesh = new Mesh(new BufferGeometry(), this.#material)
     this.#mesh.frustumCulled = false
@@ -183,13 +187,18 @@ export class BoltPass {
         .mul(perMetre)
         .mul(brightness.x)
         .div(width)
-      return vec4(channelColor(air.xz.mul(luminance).min(GREATEST)), 1)
+      return vec4(air.xz.mul(luminance).min(GREATEST), 0, 1)
     })()
     return material
   }
 
+  /** Red and blue of the channel, for `STORED_POWER`. To be called inside of a shader function. @param at - In the picture, y down. */
+  sample(at: Vec2): Vec2 {
+    return this.#texture.sample(at).level(0).xy
+  }
+
   /**
-   * Draws it over the light of a flash.
+   * Draws it.
    *
    * @param offset - Its place from the camera, in the mapped space [m].
    * @param branches - Light of branches over that which they can have, in [0, 1].
@@ -199,8 +208,7 @@ export class BoltPass {
     { viewToMapped }: AtmosphereView,
     offset: Vector3,
     { axes, brightLength }: PlacedChannel,
-    branches: number,
-    target: RenderTarget
+    branches: number
   ): void {
     const [east, north, up] = axes
     this.#place.value.set(offset.dot(east), offset.dot(north), offset.dot(up))
@@ -215,14 +223,17 @@ export class BoltPass {
     this.#stemLight.value = STORED_POWER / (4 * Math.PI * brightLength)
     this.#branchLight.value = this.#stemLight.value * branches
     const state = RendererUtils.resetRendererState(renderer, {} as never)
-    renderer.setRenderTarget(target)
-    renderer.autoClear = false
+    this.#target.setSize(frame.size.value.x, frame.size.value.y)
+    renderer.setRenderTarget(this.#target)
+    renderer.setClearColor(0x000000, 0)
+    renderer.autoClear = true
     renderer.render(this.#scene, this.#clouds.camera)
     RendererUtils.restoreRendererState(renderer, state)
   }
 
-  /** Frees its geometry. */
+  /** Frees its render target and geometry. */
   dispose(): void {
+    this.#target.dispose()
     this.#mesh.geometry.dispose()
     this.#material.dispose()
   }

@@ -6,7 +6,7 @@ import type { NodeFrame, Renderer } from 'three/webgpu'
 import { checkClouds } from '../check'
 import { viewpointMapped } from '../density/CloudField'
 import type { CloudsNode } from '../march/CloudsNode'
-import type { Vec3 } from '../tsl-types'
+import type { Float, Vec3 } from '../tsl-types'
 import { CHANNEL_COLOR, fromCamera, lightningChannel } from './channel'
 import { flashCurve, lightBetween } from './flashCurve'
 import { seeded, type Random } from './random'
@@ -210,8 +210,8 @@ export class Lightning extends EventDispatcher<LightningEventMap> {
   }
 
   /** Adds its light to a colour: called by the clouds' node. */
-  dim(color: Vec3): Vec3 {
-    return this.#passes.addTo(color)
+  dim(color: Vec3, transmittance: Float): Vec3 {
+    return this.#passes.addTo(color, transmittance)
   }
 
   /** Frees its textures, and takes it from the clouds. */

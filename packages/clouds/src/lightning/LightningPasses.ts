@@ -31,8 +31,10 @@ import {
   type PlacedChannel,
   type StormColumn
 } from './channel'
+import { hazeAt } from './hazeAt'
 import { StormDensity } from './StormDensity'
 import { channelColor } from './tsl/channelColor'
+import { limbDarkening } from './tsl/limbDarkening'
 import { meanInverseSquare } from './tsl/lineLight'
 
 /**
@@ -44,6 +46,7 @@ const CLOUD_SOFTNESS = 250
 const HAZE_SOFTNESS = 25
 /** Longest path through lit haze [m]. */
 const LONGEST_HAZE = 60_000
+const LONGEST_OCTAVE = Math.log2(LONGEST_HAZE)
 
 /** Opacity of clouds below which their light is not seen [–]. */
 const LEAST_OPACITY = 1e-3
@@ -62,28 +65,10 @@ const AIR_LIKE = 0.3
 /** Weight of dark air where neighbours are at other distances. 0: bright lines around what stands before the sky. */
 const DARK = 0.01
 
-/** Edge of a pixel of the light, in the picture's. Greater: blurred edges and channels. */
-const LIGHT_PIXEL = 2
-
-/**
- * Radiance of a cloud's surface that is lit from inside, over that of an even one [–]: (1 + 1.5 μ)/2, of which the mean over the light that leaves is 1.
- *
- * @param facing - μ, cosine between the surface's normal and the way to the eye.
- * @see Milne 1930, "Thermodynamics of the stars", Handbuch der Astrophysik 3, §33: limb darkening in Eddington's approximation
- */
-const limbDarkening = (facing: Float): Float => facing.clamp(0, 1).mul(0.75).add(0.5)
+/** Edge of a pixel of the light, in the picture's. Greater: heads with blurred outlines. */
+const LIGHT_PIXEL = 3
 
 const _offset = new Vector3()
-
-/** Scattering by molecules and aerosols at an altitude, 520 nm [1/m]. */
-function hazeAt({ atmosphere }: AtmosphereView, altitude: number): number {
-  const { rayleighScattering, rayleighScaleHeight, mieScattering, mieScaleHeight } =
-    atmosphere.parameters
-  return (
-    rayleighScattering[1] * Math.exp(-altitude / rayleighScaleHeight) +
-    mieScattering[1] * Math.exp(-altitude / mieScaleHeight)
-  )
-}
 
 /** Passes that draw a flash: its light in clouds and in haze, and its channel. */
 export class LightningPasses {
@@ -229,15 +214,16 @@ export class LightningPasses {
   }
 
   /**
-   * Light of a pixel, for `STORED_POWER`, from the marched ones around that are as far: of its clouds, and of its air.
+   * Light of a pixel, for `STORED_POWER`, from the marched ones around that are as far: red and blue of its clouds, and that of its air.
    */
   #lit(): Vec4 {
     const { viewRays, accumulated, seen } = this.#clouds.passes
     const { marchedSize } = viewRays.frame
     return Fn(() => {
       const here = uv() as unknown as Vec2
-      const transmittance = accumulated.light.sample(here).level(0).w.toConst() as Float
       const own = unpack(accumulated.distances.sample(here).level(0))
+        .xy.min(LONGEST_OCTAVE)
+        .toConst()
       const place = here.mul(this.#scale).add(this.#offset).mul(marchedSize).sub(0.5).toConst()
       const first = place.floor().toConst() as Vec2
       const part = place.sub(first).toConst() as Vec2
@@ -250,12 +236,11 @@ export class LightningPasses {
           .toConst()
         const found = this.#glow.sample(texel).level(0).toConst() as Vec4
         const weights = mix(part.oneMinus(), part, vec2(x, y)).toConst() as Vec2
-        const apart = seen.ray
-          .sample(texel)
-          .level(0)
-          .xy.sub(own.xy)
-          .div(vec2(LIKE, AIR_LIKE))
-          .toConst() as Vec2
+        const distances = seen.ray.sample(texel).level(0).xy.min(LONGEST_OCTAVE)
+        const apart = distances
+          .sub(own)
+          .mul(vec2(1 / LIKE, 1 / AIR_LIKE))
+          .toConst()
         const like = weights.x
           .mul(weights.y)
           .add(1e-3)
@@ -267,7 +252,7 @@ export class LightningPasses {
       const air = airs.x.div(airs.y).toConst() as Float
       // Some where none of them sees a cloud.
       const all = clouds.add(vec3(air, air, 1).mul(1e-6)).toConst() as Vec3
-      return vec4(channelColor(mix(all.xy.div(all.z), vec2(air), transmittance).toConst()), 1)
+      return vec4(all.xy.div(all.z), air, 1)
     })()
   }
 
@@ -296,12 +281,18 @@ export class LightningPasses {
     return sum.mul(end).mul(STORED_POWER / (3 * 16 * Math.PI ** 2))
   }
 
-  /** Adds its light to a picture's colour. To be called inside of a shader function. */
-  addTo(color: Vec3): Vec3 {
+  /**
+   * Adds its light to a picture's colour. To be called inside of a shader function.
+   *
+   * @param transmittance - Part of the light from behind that passes the clouds.
+   */
+  addTo(color: Vec3, transmittance: Float): Vec3 {
     const result = color.toVar() as Variable<Vec3>
     If(this.power.greaterThan(0), () => {
-      const light = this.#light.sample(uv()).level(0).xyz
-      result.addAssign(light.mul(this.power.mul(1 / STORED_POWER)))
+      const here = uv() as unknown as Vec2
+      const { xyz: light } = this.#light.sample(here).level(0).toConst()
+      const glow = mix(light.xy, vec2(light.z), transmittance).add(this.#bolt.sample(here))
+      result.addAssign(channelColor(glow.toConst()).mul(this.power.mul(1 / STORED_POWER)))
     })
     return result
   }
@@ -340,7 +331,7 @@ export class LightningPasses {
     this.#target.setSize(Math.ceil(x / LIGHT_PIXEL), Math.ceil(y / LIGHT_PIXEL))
     this.#glowPass.render(renderer, this.#glowTarget)
     this.#pass.render(renderer, this.#target)
-    this.#bolt.render(renderer, view, _offset, channel, power.branches / power.all, this.#target)
+    this.#bolt.render(renderer, view, _offset, channel, power.branches / power.all)
   }
 
   /** Frees render targets and passes. */
