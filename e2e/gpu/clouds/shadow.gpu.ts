@@ -129,7 +129,7 @@ gpuTest(
     field.bake(renderer)
     const shadows = new CloudShadowMap(field)
     const next = random(5)
-    const places = Array.from({ length: 700 }, () => {
+    const places = Array.from({ length: 1500 }, () => {
       const [x, y, z] = [next() - 0.5, next(), next() - 0.5]
       return [30_000 * x, 500 + 9000 * y, 30_000 * z, 0]
     })
