@@ -83,9 +83,9 @@ function accumulate(
     const share = weight.div(all).toConst() as Float
     light.assign(mix(clipped, now.light, share))
     samples.assign(all.min(frame.maxSamples))
-    // Clouds that this frame does not see are where they were; a distance is of all the light that is shown.
+    // Clouds that this frame does not see are where they were. A distance follows own samples: in the mean with a neighbour's there may be no cloud.
     If(history.hasClouds, () => {
-      const known = select(isOwn.and(now.light.w.lessThanEqual(CLEAR)), share, 0)
+      const known = select(isOwn.and(now.light.w.lessThanEqual(CLEAR)), share.max(youth), 0)
       distance.assign(mix(history.distance, distance, known))
     })
   })
