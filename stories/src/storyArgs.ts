@@ -1,6 +1,6 @@
 import type { ArgTypes } from '@storybook/html-vite'
 import type { RendererArgs, TimeArgs } from './scene'
-import { ANTIALIASING, type ValleyEffects } from './valley/finish'
+import { ANTIALIASING, type PostEffects } from './valley/finish'
 
 /** A choice among things with labels. */
 export const choiceOf = (things: Readonly<Record<string, { readonly label: string }>>) => ({
@@ -83,7 +83,7 @@ export const effect = (name: string, description: string): object => ({
 })
 
 /** Switches of post effects. */
-export const effectArgTypes: ArgTypes<ValleyEffects> = {
+export const effectArgTypes: ArgTypes<PostEffects> = {
   antialiasing: {
     name: 'Smooth edges',
     ...choiceOf(ANTIALIASING),

@@ -36,7 +36,7 @@ import { LAKES } from './terrain/lakes'
 import { addNightSky } from './terrain/NightSky'
 import { Vegetation } from './terrain/vegetation/Vegetation'
 import type { GroundView } from './terrain/viewAlong'
-import type { ValleyEffects } from './valley/finish'
+import type { PostEffects } from './valley/finish'
 import { drawnOf } from './valleyAir'
 
 export const VIEWS = {
@@ -106,7 +106,7 @@ export const COLORS = {
   pages: { label: 'Pages: there, fading in, missing' }
 } as const
 
-export interface TerrainArgs extends RendererArgs, TimeArgs, ValleyEffects {
+export interface TerrainArgs extends RendererArgs, TimeArgs, PostEffects {
   view: keyof typeof VIEWS
   color: keyof typeof COLORS
   wireframe: boolean

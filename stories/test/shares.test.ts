@@ -19,7 +19,7 @@ it('adds up the passes of a feature, the longest first', () => {
 })
 
 it('gives each post effect a share of its own, and leaves a pass that it does not know its name', () => {
-  // Names as three r187 and `ValleyFinish` give them.
+  // Names as three r187 and `PictureFinish` give them.
   const features = {
     AO: 'ambient occlusion',
     Occlusion: 'ambient occlusion',

@@ -2,7 +2,7 @@ import { expect, it } from 'vitest'
 import meta, { Everything, Meadow } from '../src/terrain.stories'
 import type { TerrainArgs } from '../src/terrain.scene'
 import { hasEffects, NO_EFFECTS } from '../src/terrain/GroundFinish'
-import type { ValleyEffects } from '../src/valley/finish'
+import type { PostEffects } from '../src/valley/finish'
 
 const argsOf = ({ args }: { args?: Partial<TerrainArgs> }): TerrainArgs =>
   ({ ...meta.args, ...args }) as TerrainArgs
@@ -12,7 +12,7 @@ it('has a picture drawn to a texture for each post effect, and for nothing else'
   expect(hasEffects(bare)).toBe(false)
   const full: TerrainArgs = { ...bare, clouds: true, vegetation: true }
   expect(hasEffects(full)).toBe(false)
-  for (const name of Object.keys(NO_EFFECTS) as (keyof ValleyEffects)[]) {
+  for (const name of Object.keys(NO_EFFECTS) as (keyof PostEffects)[]) {
     const on = name === 'antialiasing' ? 'traa' : true
     expect([name, hasEffects({ ...bare, [name]: on })]).toEqual([name, true])
   }

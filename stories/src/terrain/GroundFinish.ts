@@ -4,12 +4,12 @@ import type { PerspectiveCamera } from 'three'
 import type { Node, WebGPURenderer } from 'three/webgpu'
 import type { AirPost } from '../air'
 import { frameClock } from '../scene'
-import { ValleyFinish, type ValleyEffects } from '../valley/finish'
+import { PictureFinish, type PostEffects } from '../valley/finish'
 import type { PictureNode } from '../valley/PictureNode'
 import { withDepth } from '../valleyAir'
 
 /** Post effects of a scene on a terrain, all off. */
-export const NO_EFFECTS: ValleyEffects = {
+export const NO_EFFECTS: PostEffects = {
   antialiasing: 'none',
   occlusion: false,
   localExposure: false,
@@ -19,14 +19,14 @@ export const NO_EFFECTS: ValleyEffects = {
 }
 
 /** True if any post effect is on: these need a picture that is drawn to a texture. */
-export const hasEffects = (effects: ValleyEffects): boolean =>
-  Object.entries(NO_EFFECTS).some(([name, off]) => effects[name as keyof ValleyEffects] !== off)
+export const hasEffects = (effects: PostEffects): boolean =>
+  Object.entries(NO_EFFECTS).some(([name, off]) => effects[name as keyof PostEffects] !== off)
 
 /** Camera of a scene on a terrain: exposure by the picture, and post effects over it. */
 export class GroundFinish {
   readonly #exposure: AutoExposureNode
   readonly #picture: PictureNode
-  readonly #finish: ValleyFinish
+  readonly #finish: PictureFinish
   readonly #elapsed: () => number
 
   /**
@@ -46,7 +46,7 @@ export class GroundFinish {
     const picture = (this.#picture = withDepth(color, scenePass))
     const exposure = (this.#exposure = autoExposure(picture, atmosphere))
     const seen = { scenePass, depth, picture, exposure, clouds, standsStill: true }
-    this.#finish = new ValleyFinish(renderer, pipeline, camera, seen)
+    this.#finish = new PictureFinish(renderer, pipeline, camera, seen)
     this.#elapsed = frameClock(isStill)
   }
 
@@ -55,7 +55,7 @@ export class GroundFinish {
    *
    * @param compensation - Brighter than metered [stops].
    */
-  set(effects: ValleyEffects, compensation: number): void {
+  set(effects: PostEffects, compensation: number): void {
     this.#exposure.compensation = compensation
     this.#finish.set(effects)
   }

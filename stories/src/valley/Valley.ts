@@ -15,7 +15,7 @@ import { RenderPipeline } from 'three/webgpu'
 import type { WebGPURenderer } from 'three/webgpu'
 import { EYE_HEIGHT } from '../moving/Walk'
 import { valleyAir, type ValleyAir } from '../valleyAir'
-import { ValleyFinish, type ValleyEffects } from './finish'
+import { PictureFinish, type PostEffects } from './finish'
 import { ValleyPrecipitation } from './falling'
 import {
   applyFactors,
@@ -41,7 +41,7 @@ import { valleyFlashes } from './flashes'
 import { valleyLayers, type Weather, WeatherBlend, type WeatherName } from './weather'
 
 /** State of the valley. */
-export interface ValleyState extends ValleyFeatures, ValleyEffects, ValleyFactors {
+export interface ValleyState extends ValleyFeatures, PostEffects, ValleyFactors {
   /** Reflections of the screen (SSR): the lake mirrors the picture itself. */
   reflections: boolean
   weather: WeatherName
@@ -128,7 +128,7 @@ export class Valley {
   readonly #nightSky
   readonly #sun
   readonly #environment
-  readonly #finish: ValleyFinish
+  readonly #finish: PictureFinish
   readonly #dispose: (() => void)[] = []
   #turbidity = NaN
   readonly #clock = new StepClock()
@@ -171,7 +171,7 @@ export class Valley {
     scene.add(this.#water.mesh)
     this.#renderer = renderer
     this.pipeline = new RenderPipeline(renderer)
-    this.#finish = new ValleyFinish(renderer, this.pipeline, camera, air)
+    this.#finish = new PictureFinish(renderer, this.pipeline, camera, air)
     this.cycle = new DayCycle(atmosphere, { autoExposure: exposure })
     this.#setDay(state.hour)
     this.#dispose.push(

@@ -31,7 +31,7 @@ export const ANTIALIASING = {
 } as const
 
 /** Post effects over a picture. */
-export interface ValleyEffects {
+export interface PostEffects {
   antialiasing: keyof typeof ANTIALIASING
   /** Occlusion of the light of the sky (GTAO). */
   occlusion: boolean
@@ -65,7 +65,7 @@ export interface FinishedPicture extends Pick<
 }
 
 /** Post effects over the exposed picture, in the order of a camera: motion, lens, film. */
-export class ValleyFinish {
+export class PictureFinish {
   readonly #renderer: Renderer
   readonly #pipeline: RenderPipeline
   readonly #camera: PerspectiveCamera
@@ -98,7 +98,7 @@ export class ValleyFinish {
     bloom,
     depthOfField,
     motionBlur
-  }: ValleyEffects): void {
+  }: PostEffects): void {
     const effects = { antialiasing, occlusion, localExposure, bloom, depthOfField, motionBlur }
     const key = JSON.stringify(effects)
     if (key === this.#key) return
@@ -139,7 +139,7 @@ export class ValleyFinish {
   }
 
   /** Light of the scene after all that happens in the camera. */
-  #picture(effects: ValleyEffects): Node {
+  #picture(effects: PostEffects): Node {
     const { scenePass, exposure, depth } = this.#air
     const { antialiasing } = effects
     const scale = antialiasing === 'taau' ? SMALL : 1

@@ -1,5 +1,5 @@
 import type { FeatureShare } from './FeatureMeter'
-import type { ValleyEffects } from './finish'
+import type { PostEffects } from './finish'
 import type { PassTime } from './PassTimes'
 
 /** Passes that draw to the canvas. */
@@ -45,7 +45,7 @@ const FEATURES: readonly (readonly [prefix: string, feature: string])[] = [
 ]
 
 /** Post effects that the last pass draws. */
-export type LastPass = Pick<ValleyEffects, 'antialiasing' | 'bloom' | 'motionBlur'>
+export type LastPass = Pick<PostEffects, 'antialiasing' | 'bloom' | 'motionBlur'>
 
 /** Name of what the last pass draws, to the canvas. */
 export function lastFeature({ antialiasing, bloom, motionBlur }: LastPass): string {
