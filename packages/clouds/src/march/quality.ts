@@ -61,7 +61,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     depthStep: 0.3,
     layerSteps: 18,
     lightSteps: 4,
-    block: 5
+    block: 6
   },
   high: {
     steps: 640,
@@ -70,7 +70,7 @@ export const cloudQualities: Readonly<Record<CloudQualityName, CloudQuality>> = 
     depthStep: 0.3,
     layerSteps: 18,
     lightSteps: 4,
-    block: 4
+    block: 5
   },
   ultra: {
     steps: 960,

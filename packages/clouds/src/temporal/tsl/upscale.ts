@@ -33,7 +33,7 @@ const OLD_SAMPLES = 4
  * grain. Fewer: grain at edges of near clouds for seconds (*Inside a cloud*); more: still clouds blur (*Cumulus*).
  */
 const SHARED_SAMPLES = 2
-const OWN_SAMPLES = 8
+const OWN_SAMPLES = 10
 
 /**
  * Square of the distance d at which a sample is of no use to its neighbours, to which it is worth (1 − d²/s)² [pixels²]. Greater: clouds
