@@ -32,8 +32,18 @@ const steps = [
     id: 'shafts',
     title: 'Reference shafts',
     script: 'validate',
-    // Every fourth camera: all scenes are among them.
-    args: ['--check', '--shafts', '--all', '--quality', 'medium,high', '--every', '4'],
+    // Every fourth camera: all scenes are among them. On WebGL GPU tests march the same shader.
+    args: [
+      '--check',
+      '--shafts',
+      '--all',
+      '--backend',
+      'webgpu',
+      '--quality',
+      'medium,high',
+      '--every',
+      '4'
+    ],
     lane: 'numbers'
   },
   { id: 'moving', title: 'Moving in stories', script: 'test:moving', lane: 'moving' },
