@@ -218,7 +218,7 @@ gpuTest(
     const camera = new PerspectiveCamera(60, 48 / 27, 1, 1e8)
     const next = random(7)
     const post = postPath(renderer, bare, camera, atmosphere)
-    for (let i = 0; i < 16; i++) {
+    for (let i = 0; i < 10; i++) {
       const height = Math.exp(next() * Math.log(6.4e7))
       const place = { longitude: 360 * next() - 180, latitude: 180 * next() - 90, height }
       Ellipsoid.WGS84.geodeticToECEF(place, camera.position)

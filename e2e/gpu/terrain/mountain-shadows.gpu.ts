@@ -54,7 +54,7 @@ gpuTest(
     camera.position.y = altitude
     const mountains = groundShadow(set.atmosphere, terrain, SQUARE)
     shafts.add(mountains)
-    for (const sun of [4, 8]) {
+    for (const sun of [4]) {
       set.atmosphere.setSunAngles(sun, 0)
       let most = 0
       for (const view of [4, 20, 172]) {
