@@ -121,6 +121,8 @@ export async function testLink(browser: Browser, origin: string, report: Report)
   const wanted = { view: parseState(place)!, hour: 18.5, weather: weathers.mist }
   check(report, await look(story), wanted)
 
+  // The controls come after the story.
+  await page.waitForSelector('#control-quality')
   const missing = await page.$eval('#control-quality', control => {
     const table = control.closest('table')!.getBoundingClientRect()
     return Math.max(table.right - document.documentElement.clientWidth, 0)
