@@ -27,16 +27,18 @@ const largestBaseline = 100_000
 /** Pictures that take the longest, which come first. */
 const longest = [
   'valley-',
-  'rain-bow',
   'stormnight-',
+  'rain-bow',
+  'halos-',
   'realornot-',
-  'realheights-',
   'mountainshadows-',
+  'realheights-',
+  'clouds-',
   'lightshafts-',
   'flatworld-',
-  'halos-',
-  'clouds-',
-  'planets-'
+  'photogrammetry-',
+  'sandbox-',
+  'environment-'
 ]
 
 const { values, positionals } = parseArgs({
