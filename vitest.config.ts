@@ -8,10 +8,11 @@ const others = ['stories/test', 'e2e/test'].flatMap(folder =>
     .map(file => `${folder}/${file.replaceAll('\\', '/')}`)
     .filter(file => file.endsWith('.test.ts'))
 )
-/** Those that replace modules or globals, or set up what a browser has: others must not see it. */
-const alone = others.filter(file =>
-  /vi\.(mock|stubGlobal)\(|sampledTextures/.test(readFileSync(file, 'utf8'))
-)
+/** True for code that replaces modules, or globals for good, or sets up what a browser has: others must not see it. */
+const changesOthers = (code: string): boolean =>
+  /vi\.mock\(|sampledTextures/.test(code) ||
+  (code.includes('vi.stubGlobal(') && !code.includes('vi.unstubAllGlobals'))
+const alone = others.filter(file => changesOthers(readFileSync(file, 'utf8')))
 
 export default defineConfig({
   resolve: { alias: sourceAliases },
@@ -24,17 +25,12 @@ export default defineConfig({
       {
         extends: true,
         test: {
-          name: 'packages',
-          include: ['packages/*/{src,test}/**/*.test.ts'],
-          // A worker imports three once for all of its files: they change nothing of other modules for good.
-          isolate: false
-        }
-      },
-      {
-        extends: true,
-        test: {
-          name: 'stories',
-          include: others.filter(file => !alone.includes(file)),
+          name: 'together',
+          include: [
+            'packages/*/{src,test}/**/*.test.ts',
+            ...others.filter(file => !alone.includes(file))
+          ],
+          // A worker imports three and the packages once for all of its files: they change nothing of other modules for good.
           isolate: false
         }
       },

@@ -215,7 +215,10 @@ try {
   const steps: [string, () => string][] = [
     ['npm install of the packed packages', () => install(app)],
     ['the code of the READMEs', () => `${writeReadmeModules(root, app)} blocks`],
-    ['strict types, skipLibCheck off', () => execute('npx', ['--no-install', 'tsc'], app)],
+    [
+      'strict types, skipLibCheck off',
+      () => execute('npx', ['--no-install', 'tsc', '--checkers', '1'], app)
+    ],
     ['vite build', () => execute('npx', ['--no-install', 'vite', 'build', '--logLevel=warn'], app)],
     ['webpack build', () => execute('node', ['webpack.mjs'], app)],
     ['require() in CommonJS', () => requireAll(app)]

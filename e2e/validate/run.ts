@@ -44,7 +44,8 @@ const usage = `npm run validate -- [options]
                              or several (medium,high), each in turn,
                              --reversed for a reversed depth buffer, --forward for materials that draw
                              the air themselves, --all for post effect and materials on WebGPU and the post
-                             effect on WebGL, and of qualities but the first for WebGPU's post effect alone,
+                             effect on WebGL (of these the backend's alone, if --backend names one), and of
+                             qualities but the first for the post effect alone,
                              --every N for every Nth camera of the file alone
   --export-clouds OUT        instead: writes clouds as OUT.raw (float32 extinction [1/m], z, y, x) and
                              OUT.json; with --preset NAME, --size 6000 and --cell 20 [m], --longitude and
@@ -104,7 +105,7 @@ async function main(): Promise<void> {
       sky: { type: 'string' },
       spectral: { type: 'string' },
       clouds: { type: 'string' },
-      backend: { type: 'string', default: 'webgpu' },
+      backend: { type: 'string' },
       path: { type: 'string', default: 'volume' },
       json: { type: 'boolean', default: false },
       worst: { type: 'string', default: '0' },
@@ -131,7 +132,7 @@ async function main(): Promise<void> {
     console.log(usage)
     return
   }
-  const where = { backend: choice<Backend>('backend', values.backend, backends) }
+  const where = { backend: choice<Backend>('backend', values.backend ?? 'webgpu', backends) }
   const every = Math.max(count('every', values.every), 1)
   const paths = values.path.split(',').map(name => choice<Path>('path', name, ['volume', 'march']))
   const worst = count('worst', values.worst)
@@ -190,12 +191,13 @@ async function main(): Promise<void> {
     // More samples are the same code on either backend, and in materials.
     const [usual, ...others] = qualities
     // On WebGL materials draw what the post effect does: see the GPU tests.
+    const everyWay = [
+      ['webgpu', false],
+      ['webgpu', true],
+      ['webgl', false]
+    ] as const
     const chosen = values.all
-      ? ([
-          ['webgpu', false],
-          ['webgpu', true],
-          ['webgl', false]
-        ] as const)
+      ? everyWay.filter(([backend]) => backend === (values.backend ?? backend))
       : ([[where.backend, values.forward]] as const)
     const usualWays = chosen.map(([backend, isForward]) => ({
       backend,

@@ -24,9 +24,7 @@ const subjects: Partial<Record<string, Subject>> = {
     view: { fieldOfView: FIELD_OF_VIEW, pitch, sun: BOW_SUN, aside: azimuth - heading },
     least: { primary: 72, secondary: 36 }
   },
-  'halos-halo': { view: viewOf(SKIES.halo), least: { halo: 220 } },
-  'halos-glory': { view: viewOf(SKIES.glory), least: { glory: 240 } },
-  'halos-fogbow': { view: viewOf(SKIES.fogbow), least: { fogbow: 48 } }
+  'halos-halo': { view: viewOf(SKIES.halo), least: { halo: 220 } }
 }
 
 /** Fault of a picture whose subject is not in it; undefined where none is found. */

@@ -58,7 +58,9 @@ function compile(modules: Record<string, string>): string {
     const config = { extends: '../../../tsconfig.base.json', compilerOptions, include: ['*.ts'] }
     writeFileSync(join(place, 'tsconfig.json'), JSON.stringify(config))
     const tsc = fileURLToPath(new URL('../../node_modules/typescript/bin/tsc', import.meta.url))
-    execFileSync(process.execPath, [tsc, '-p', '.'], { cwd: place, encoding: 'utf8' })
+    // Each checker goes through the packages' sources again: one takes half of the processor time of four.
+    const args = [tsc, '-p', '.', '--checkers', '1']
+    execFileSync(process.execPath, args, { cwd: place, encoding: 'utf8' })
     return ''
   } catch (error) {
     return (error as { stdout?: string }).stdout ?? String(error)

@@ -10,6 +10,7 @@ import { random } from '../harness/atmosphere'
 import { ballScene, draw, luminance } from '../harness/environment'
 import { evaluateOnGpu } from '../harness/evaluate'
 import { expectClose, expectTrue } from '../harness/expect'
+import { filterLeast } from '../harness/filter-samples'
 import { gpuTest } from '../harness/gpu-test'
 import type { Picture } from '../harness/picture'
 
@@ -40,6 +41,7 @@ function settle(
 gpuTest(
   'is drawn again when sun or height change, a step a frame, in the same memory',
   async t => {
+    filterLeast()
     const renderer = await t.createRenderer(size)
     const atmosphere = new Atmosphere().setSunAngles(20, 100)
     const { scene, camera } = ballScene(0.3, 1)
@@ -83,6 +85,7 @@ gpuTest(
 gpuTest(
   'follows a moving sun alone in a scene, in the luminance scale of now, whatever it was when a face was drawn',
   async t => {
+    filterLeast()
     const renderer = await t.createRenderer(size)
     const atmosphere = new Atmosphere().setSunAngles(20, 100)
     const { scene, camera } = ballScene(0.1, 1)
@@ -125,6 +128,7 @@ gpuTest(
 gpuTest(
   'is drawn again when layers change',
   async t => {
+    filterLeast()
     const renderer = await t.createRenderer(size)
     const atmosphere = new Atmosphere().setSunAngles(40, 100)
     const { scene, camera } = ballScene(0.3, 1)
@@ -160,6 +164,7 @@ gpuTest(
 gpuTest(
   'filters a part at a time what three filters at once, unseen until it is complete',
   async t => {
+    filterLeast()
     const renderer = await t.createRenderer(size)
     const cube = new CubeRenderTarget(256, { type: HalfFloatType, depthBuffer: false })
     const box = new Mesh(new BoxGeometry(5, 5, 5), new NodeMaterial())

@@ -272,40 +272,6 @@ gpuTest(
   { bakes: true }
 )
 
-gpuTest(
-  'leaves renderer.info.memory where it was after twelve rounds',
-  async t => {
-    const renderer = await t.createRenderer(small)
-    const camera = new PerspectiveCamera()
-    const round = (): void => {
-      const atmosphere = new Atmosphere()
-      atmosphere.bakeStepsPerFrame = 1
-      const background = skyBackground(atmosphere)
-      const sun = new SunDirectionalLight(atmosphere)
-      const mesh = new Mesh(new SphereGeometry(), new MeshLambertMaterial())
-      mesh.position.z = -5
-      const scene = new Scene().add(sun, mesh)
-      scene.backgroundNode = background
-      renderer.render(scene, camera)
-      for (const owned of [background, sun, mesh.geometry, mesh.material]) owned.dispose()
-      atmosphere.dispose()
-    }
-    const memory = (): string => JSON.stringify(renderer.info.memory)
-    round()
-    const before = memory()
-    for (let i = 0; i < 12; i++) {
-      // Three begin to bake; to see the tables and volumes themselves come and go is quicker.
-      if (i === 3) reuseTables(true)
-      round()
-      expectTrue(memory() === before, `before ${before}\nafter round ${i} ${memory()}`)
-      if (i % 4 === 3) await finishWork(renderer)
-    }
-    t.note(before)
-  },
-  // three counts them itself, on both backends alike.
-  { backends: ['webgpu'], bakes: true }
-)
-
 gpuTest('draws every pixel ratio alike', async t => {
   const renderer = await t.createRenderer(small)
   const view = new View(renderer)

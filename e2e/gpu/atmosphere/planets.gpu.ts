@@ -168,37 +168,42 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
-gpuTest('draws even ground as the model does', async t => {
-  const renderer = await t.createRenderer({ width: 48, height: 27 })
-  const atmosphere = new Atmosphere()
-  atmosphere.frame = 'ecef'
-  const map = new DataTexture(new Float32Array([0.1, 0.1, 0.1, 1]), 1, 1, RGBAFormat, FloatType)
-  map.needsUpdate = true
-  const ground = planetGround({ surface: map, roughness: 0 })
-  const camera = new PerspectiveCamera(60, 48 / 27, 1, 1e8)
-  const pictures: Picture[][] = []
-  for (const layer of [undefined, ground]) {
-    if (layer !== undefined) atmosphere.add(layer)
-    const scene = airScene(atmosphere)
-    const row: Picture[] = []
-    for (const height of [2, 3000, 4e5, 2e7]) {
-      Ellipsoid.WGS84.geodeticToECEF({ longitude: 20, latitude: 50, height }, camera.position)
-      camera.up.copy(camera.position).normalize()
-      camera.lookAt(height > 1e6 ? new Vector3() : new Vector3(0, 0, -2e6))
-      camera.updateMatrixWorld()
-      atmosphere.sunDirection = new Vector3(1, 0.6, 0.5)
-      row.push(await drawForward(renderer, scene, camera, atmosphere))
+gpuTest(
+  'draws even ground as the model does',
+  async t => {
+    const renderer = await t.createRenderer({ width: 48, height: 27 })
+    const atmosphere = new Atmosphere()
+    atmosphere.frame = 'ecef'
+    const map = new DataTexture(new Float32Array([0.1, 0.1, 0.1, 1]), 1, 1, RGBAFormat, FloatType)
+    map.needsUpdate = true
+    const ground = planetGround({ surface: map, roughness: 0 })
+    const camera = new PerspectiveCamera(60, 48 / 27, 1, 1e8)
+    const pictures: Picture[][] = []
+    for (const layer of [undefined, ground]) {
+      if (layer !== undefined) atmosphere.add(layer)
+      const scene = airScene(atmosphere)
+      const row: Picture[] = []
+      for (const height of [2, 3000, 4e5, 2e7]) {
+        Ellipsoid.WGS84.geodeticToECEF({ longitude: 20, latitude: 50, height }, camera.position)
+        camera.up.copy(camera.position).normalize()
+        camera.lookAt(height > 1e6 ? new Vector3() : new Vector3(0, 0, -2e6))
+        camera.updateMatrixWorld()
+        atmosphere.sunDirection = new Vector3(1, 0.6, 0.5)
+        row.push(await drawForward(renderer, scene, camera, atmosphere))
+      }
+      pictures.push(row)
     }
-    pictures.push(row)
-  }
-  pictures[0].forEach((picture, i) => {
-    const differences = relativeDifferences(picture, pictures[1][i])
-    const most = differences[Math.floor(0.99 * differences.length)]
-    t.note(`view ${i}: ${most.toExponential(1)}`)
-    expectTrue(most < 0.01, `view ${i}: 1 % of pixels differ by more than ${most}`)
-  })
-  atmosphere.dispose()
-})
+    pictures[0].forEach((picture, i) => {
+      const differences = relativeDifferences(picture, pictures[1][i])
+      const most = differences[Math.floor(0.99 * differences.length)]
+      t.note(`view ${i}: ${most.toExponential(1)}`)
+      expectTrue(most < 0.01, `view ${i}: 1 % of pixels differ by more than ${most}`)
+    })
+    atmosphere.dispose()
+  },
+  // The same numbers on both.
+  { backends: ['webgpu'] }
+)
 
 gpuTest(
   'shows only light, and no hole, from random cameras, forward and as a post effect',
@@ -213,7 +218,7 @@ gpuTest(
     const camera = new PerspectiveCamera(60, 48 / 27, 1, 1e8)
     const next = random(7)
     const post = postPath(renderer, bare, camera, atmosphere)
-    for (let i = 0; i < 16; i++) {
+    for (let i = 0; i < 10; i++) {
       const height = Math.exp(next() * Math.log(6.4e7))
       const place = { longitude: 360 * next() - 180, latitude: 180 * next() - 90, height }
       Ellipsoid.WGS84.geodeticToECEF(place, camera.position)

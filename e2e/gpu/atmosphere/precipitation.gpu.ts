@@ -60,48 +60,53 @@ function view(): { scene: Scene; camera: PerspectiveCamera; atmosphere: Atmosphe
   return { scene: new Scene(), camera, atmosphere: new Atmosphere() }
 }
 
-gpuTest('rain and snow dim a view as much as their sizes say', async t => {
-  const renderer = await t.createRenderer({ ...size, alpha: true })
-  const { scene, camera, atmosphere } = view()
-  renderer.setClearColor(0, 0)
-  const widths = { rain: (d: number) => d / 1000, snow: flakeWidth }
-  for (const [falling, kind, rate, widthOf] of [
-    [rainfall(atmosphere, { rate: 25, time: 30 }), rain, 25, widths.rain],
-    [snowfall(atmosphere, { rate: 2, time: 30 }), snow, 2, widths.snow]
-  ] as const) {
-    scene.clear()
-    scene.add(falling)
-    // At one time alone the few large drops nearby count too much.
-    const times = [30, 31.7, 33.1, 36.5, 39.8, 42.2]
-    const opacities: number[] = []
-    for (const time of times) {
-      falling.time = time
-      opacities.push(mean(await t.render(renderer, scene, camera, size), 3))
-    }
-    const opacity = opacities.reduce((a, b) => a + b) / times.length
-    const expected = 1 - Math.exp(-drawnDepth(kind, rate, widthOf))
-    t.note(`${kind.name}: ${opacity.toExponential(3)} of ${expected.toExponential(3)}`)
-    expectClose(opacity, expected, { relative: 0.03 }, kind.name)
-    if (kind === rain) {
-      // The longer the shutter is open, the longer streaks are, each as much fainter.
-      const seen = async (shutter: number): Promise<{ touched: number; opacity: number }> => {
-        falling.shutter = shutter
-        const picture = await t.render(renderer, scene, camera, size)
-        const touched = picture.data.filter((alpha, i) => i % 4 === 3 && alpha > 1e-6).length
-        return { touched, opacity: mean(picture, 3) }
+gpuTest(
+  'rain and snow dim a view as much as their sizes say',
+  async t => {
+    const renderer = await t.createRenderer({ ...size, alpha: true })
+    const { scene, camera, atmosphere } = view()
+    renderer.setClearColor(0, 0)
+    const widths = { rain: (d: number) => d / 1000, snow: flakeWidth }
+    for (const [falling, kind, rate, widthOf] of [
+      [rainfall(atmosphere, { rate: 25, time: 30 }), rain, 25, widths.rain],
+      [snowfall(atmosphere, { rate: 2, time: 30 }), snow, 2, widths.snow]
+    ] as const) {
+      scene.clear()
+      scene.add(falling)
+      // At one time alone the few large drops nearby count too much.
+      const times = [30, 31.7, 33.1, 36.5, 39.8, 42.2]
+      const opacities: number[] = []
+      for (const time of times) {
+        falling.time = time
+        opacities.push(mean(await t.render(renderer, scene, camera, size), 3))
       }
-      const [brief, long] = [await seen(1 / 500), await seen(1 / 60)]
-      const longer = long.touched / brief.touched
-      t.note(`at 1/60 s ${longer.toFixed(2)} times as many pixels as at 1/500 s`)
-      expectTrue(longer > 1.5, `${longer} times as many pixels`)
-      expectClose(long.opacity, brief.opacity, { relative: 0.05 }, 'opacity at 1/60 s')
+      const opacity = opacities.reduce((a, b) => a + b) / times.length
+      const expected = 1 - Math.exp(-drawnDepth(kind, rate, widthOf))
+      t.note(`${kind.name}: ${opacity.toExponential(3)} of ${expected.toExponential(3)}`)
+      expectClose(opacity, expected, { relative: 0.03 }, kind.name)
+      if (kind === rain) {
+        // The longer the shutter is open, the longer streaks are, each as much fainter.
+        const seen = async (shutter: number): Promise<{ touched: number; opacity: number }> => {
+          falling.shutter = shutter
+          const picture = await t.render(renderer, scene, camera, size)
+          const touched = picture.data.filter((alpha, i) => i % 4 === 3 && alpha > 1e-6).length
+          return { touched, opacity: mean(picture, 3) }
+        }
+        const [brief, long] = [await seen(1 / 500), await seen(1 / 60)]
+        const longer = long.touched / brief.touched
+        t.note(`at 1/60 s ${longer.toFixed(2)} times as many pixels as at 1/500 s`)
+        expectTrue(longer > 1.5, `${longer} times as many pixels`)
+        expectClose(long.opacity, brief.opacity, { relative: 0.05 }, 'opacity at 1/60 s')
+      }
+      falling.rate = 0
+      const none = await t.render(renderer, scene, camera, size)
+      expectTrue(mean(none, 3) === 0, `${kind.name} at rate 0`)
+      falling.dispose()
     }
-    falling.rate = 0
-    const none = await t.render(renderer, scene, camera, size)
-    expectTrue(mean(none, 3) === 0, `${kind.name} at rate 0`)
-    falling.dispose()
-  }
-})
+  },
+  // WebGL draws rain and snow in `everything`.
+  { backends: ['webgpu'] }
+)
 
 gpuTest(
   'rain is lit, hidden by depth and roofs, and frees its memory',

@@ -8,21 +8,7 @@ import { expectClose, expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import { nextFrame } from '../harness/graphics'
 import type { Picture } from '../harness/picture'
-import { addBox, expectSame, parameters, stage, stageSize as size } from '../harness/shaft-stage'
-
-gpuTest(
-  'leaves fog without casters the same to the last bit',
-  async t => {
-    const renderer = await t.createRenderer(size)
-    const [plain, shafted] = [null, {}].map(options => stage(renderer, 20, options))
-    for (const { atmosphere } of [plain, shafted])
-      atmosphere.add(distanceFog({ density: 1 / 4000 }), heightFog({ density: 0.002 }))
-    expectSame(await shafted.draw(), await plain.draw(), 'no casters')
-    plain.dispose()
-    shafted.dispose()
-  },
-  { backends: ['webgpu'] }
-)
+import { addBox, parameters, stage, stageSize as size } from '../harness/shaft-stage'
 
 gpuTest(
   'takes as much more from the air as an artistic factor gives it',

@@ -87,36 +87,3 @@ gpuTest(
   // TRAA is three's, and shafts have no history.
   { backends: ['webgpu'] }
 )
-
-/** Turn of the camera in a frame: 90°/s at 60 Hz [rad], and frames for which it turns. */
-const TURN = (1.5 * Math.PI) / 180
-const TURNING = 6
-
-gpuTest(
-  'has the shafts of 512 steps a pixel in a pan of 90° a second under TRAA',
-  async t => {
-    const renderer = await t.createRenderer(size)
-    const pictures: Picture[] = []
-    for (const options of [
-      { quality: 'reference' },
-      { quality: 'medium' },
-      { enabled: false }
-    ] as const) {
-      const made = towerInMist(renderer, true)
-      const { camera, shafts, draw } = made
-      shafts.set(options)
-      let picture: Picture | undefined
-      for (let frame = 0; frame <= TURNING; frame++) {
-        camera.rotation.set(0.06, (TURNING - frame) * TURN, 0, 'YXZ')
-        picture = await draw()
-      }
-      pictures.push(picture!)
-      made.dispose()
-    }
-    const [exact, ours, lit] = pictures
-    const [likeness, without] = [psnr(ours, exact), psnr(lit, exact)]
-    t.note(`${likeness.toFixed(1)} dB, without shafts ${without.toFixed(1)} dB`)
-    expectTrue(likeness >= 40 && likeness >= without + 6, `${likeness} dB, ${without}`)
-  },
-  { backends: ['webgpu'] }
-)

@@ -94,48 +94,54 @@ function segmentOf({ bottomRadius, thickness }: AtmosphereUniforms, ray: Node<'v
   }
 }
 
-gpuTest('scatters once as float64 has it, with few points', async t => {
-  const parameters = new AtmosphereParameters()
-  const uniforms = new AtmosphereUniforms()
-  uniforms.update(parameters, 1)
-  const constants = new ProfileUniforms()
-  constants.update(parameters)
-  const { bottomRadius, topRadius } = parameters
-  const next = random(7)
-  for (const [name, sunRange, most] of [
-    ['by day', [0.2, 1], [0.003, 0.02]],
-    ['at dusk', [-0.05, 0.15], [0.015, 0.12]]
-  ] as const) {
-    const rays = Array.from({ length: 400 }, (_, i) => {
-      // From the ground, from within the air, and from its top, where rays from space come in.
-      const altitude = [2, 2 + 2e4 * next() ** 2, topRadius - bottomRadius][i % 3]
-      const cosView = i % 3 === 2 ? -0.2 - 0.8 * next() : (i % 2 ? 1 : -1) * (0.01 + 0.99 * next())
-      const cosLight = sunRange[0] + (sunRange[1] - sunRange[0]) * next()
-      const [sinView, sinLight] = [cosView, cosLight].map(x => Math.sqrt(1 - x * x))
-      const cosViewLight = cosView * cosLight + sinView * sinLight * Math.cos(Math.PI * next())
-      return [altitude, i % 3 === 0 ? Math.abs(cosView) : cosView, cosLight, cosViewLight].map(
-        Math.fround
-      )
-    })
-    const results = await t.evaluate(rays, input => {
-      const ray = input.toVar()
-      return singleScatteringLight({ uniforms } as Air, constants, segmentOf(uniforms, ray))
-        .radiance
-    })
-    const errors: number[] = []
-    rays.forEach(([altitude, cosView, cosLight, cosViewLight], i) => {
-      const radius = bottomRadius + altitude
-      const length = hitsGround(radius, cosView, bottomRadius)
-        ? distanceToGround64(radius, cosView, bottomRadius)
-        : distanceToTop64(radius, cosView, topRadius)
-      const ray = { radius, cosView, cosLight, cosViewLight }
-      const [, green] = inScatter(parameters, null, ray, length)
-      if (green > 1e-5) errors.push(Math.abs(results[4 * i + 1] / green - 1))
-    })
-    errors.sort((x, y) => x - y)
-    const [middle, high] = [0.5, 0.95].map(part => errors[Math.floor(part * errors.length)])
-    t.note(`${name}: median ${(100 * middle).toFixed(2)} %, p95 ${(100 * high).toFixed(1)} %`)
-    expectTrue(errors.length > 300, `${name}: only ${errors.length} rays have light`)
-    expectTrue(middle < most[0] && high < most[1], `${name}: off by ${middle}, ${high}`)
-  }
-})
+gpuTest(
+  'scatters once as float64 has it, with few points',
+  async t => {
+    const parameters = new AtmosphereParameters()
+    const uniforms = new AtmosphereUniforms()
+    uniforms.update(parameters, 1)
+    const constants = new ProfileUniforms()
+    constants.update(parameters)
+    const { bottomRadius, topRadius } = parameters
+    const next = random(7)
+    for (const [name, sunRange, most] of [
+      ['by day', [0.2, 1], [0.003, 0.02]],
+      ['at dusk', [-0.05, 0.15], [0.015, 0.12]]
+    ] as const) {
+      const rays = Array.from({ length: 400 }, (_, i) => {
+        // From the ground, from within the air, and from its top, where rays from space come in.
+        const altitude = [2, 2 + 2e4 * next() ** 2, topRadius - bottomRadius][i % 3]
+        const cosView =
+          i % 3 === 2 ? -0.2 - 0.8 * next() : (i % 2 ? 1 : -1) * (0.01 + 0.99 * next())
+        const cosLight = sunRange[0] + (sunRange[1] - sunRange[0]) * next()
+        const [sinView, sinLight] = [cosView, cosLight].map(x => Math.sqrt(1 - x * x))
+        const cosViewLight = cosView * cosLight + sinView * sinLight * Math.cos(Math.PI * next())
+        return [altitude, i % 3 === 0 ? Math.abs(cosView) : cosView, cosLight, cosViewLight].map(
+          Math.fround
+        )
+      })
+      const results = await t.evaluate(rays, input => {
+        const ray = input.toVar()
+        return singleScatteringLight({ uniforms } as Air, constants, segmentOf(uniforms, ray))
+          .radiance
+      })
+      const errors: number[] = []
+      rays.forEach(([altitude, cosView, cosLight, cosViewLight], i) => {
+        const radius = bottomRadius + altitude
+        const length = hitsGround(radius, cosView, bottomRadius)
+          ? distanceToGround64(radius, cosView, bottomRadius)
+          : distanceToTop64(radius, cosView, topRadius)
+        const ray = { radius, cosView, cosLight, cosViewLight }
+        const [, green] = inScatter(parameters, null, ray, length)
+        if (green > 1e-5) errors.push(Math.abs(results[4 * i + 1] / green - 1))
+      })
+      errors.sort((x, y) => x - y)
+      const [middle, high] = [0.5, 0.95].map(part => errors[Math.floor(part * errors.length)])
+      t.note(`${name}: median ${(100 * middle).toFixed(2)} %, p95 ${(100 * high).toFixed(1)} %`)
+      expectTrue(errors.length > 300, `${name}: only ${errors.length} rays have light`)
+      expectTrue(middle < most[0] && high < most[1], `${name}: off by ${middle}, ${high}`)
+    }
+  },
+  // The same numbers on both.
+  { backends: ['webgpu'] }
+)

@@ -99,56 +99,61 @@ function expectPlaces(actual: Picture, expected: Picture, label: string, ...name
 }
 
 for (const depth of ['standard', 'reversed', 'logarithmic'] as const) {
-  gpuTest(`draws the sky over any backdrop with ${depth} depth`, async t => {
-    const buffers = {
-      reversedDepthBuffer: depth === 'reversed',
-      logarithmicDepthBuffer: depth === 'logarithmic'
-    }
-    const view = new View()
-    const { scene } = view
-    const renderer = await t.createRenderer({ ...size, ...buffers })
-    // What is right: nothing was there, and alpha tells what covers the sky.
-    const right = await view.draw(renderer)
-    view.showsPanes = false
-    const bare = await view.draw(renderer)
-    view.showsPanes = true
-    const sky = (place: Place): number[] => at(bare, place)
-    expectTrue(sky('sky')[2] > 0.05, `the sky is dark: ${sky('sky').join(' ')}`)
-    expectTrue(at(bare, 'ball')[0] > 1.5 * at(bare, 'ball')[2], 'the ball is not there')
-    const mixed = sky('white').map(value => opacity + (1 - opacity) * value)
-    expectClose(at(right, 'white'), mixed, { relative: 2e-3 }, 'the white pane')
-    const dimmed = sky('black').map(value => (1 - opacity) * value)
-    expectClose(at(right, 'black'), dimmed, { relative: 2e-3 }, 'the black pane')
+  gpuTest(
+    `draws the sky over any backdrop with ${depth} depth`,
+    async t => {
+      const buffers = {
+        reversedDepthBuffer: depth === 'reversed',
+        logarithmicDepthBuffer: depth === 'logarithmic'
+      }
+      const view = new View()
+      const { scene } = view
+      const renderer = await t.createRenderer({ ...size, ...buffers })
+      // What is right: nothing was there, and alpha tells what covers the sky.
+      const right = await view.draw(renderer)
+      view.showsPanes = false
+      const bare = await view.draw(renderer)
+      view.showsPanes = true
+      const sky = (place: Place): number[] => at(bare, place)
+      expectTrue(sky('sky')[2] > 0.05, `the sky is dark: ${sky('sky').join(' ')}`)
+      expectTrue(at(bare, 'ball')[0] > 1.5 * at(bare, 'ball')[2], 'the ball is not there')
+      const mixed = sky('white').map(value => opacity + (1 - opacity) * value)
+      expectClose(at(right, 'white'), mixed, { relative: 2e-3 }, 'the white pane')
+      const dimmed = sky('black').map(value => (1 - opacity) * value)
+      expectClose(at(right, 'black'), dimmed, { relative: 2e-3 }, 'the black pane')
 
-    const opaque = await view.draw(renderer, color => vec4((color as Node<'vec4'>).rgb, 1))
-    expectPlaces(opaque, right, 'alpha made 1', 'sky', 'ball', 'white', 'black', 'label')
+      const opaque = await view.draw(renderer, color => vec4((color as Node<'vec4'>).rgb, 1))
+      expectPlaces(opaque, right, 'alpha made 1', 'sky', 'ball', 'white', 'black', 'label')
 
-    renderer.setClearColor(0x336699, 0.5)
-    const half = await view.draw(renderer)
-    expectPlaces(half, right, 'half a clear colour', 'sky', 'ball', 'white', 'black', 'label')
+      renderer.setClearColor(0x336699, 0.5)
+      const half = await view.draw(renderer)
+      expectPlaces(half, right, 'half a clear colour', 'sky', 'ball', 'white', 'black', 'label')
 
-    /** Objects over an opaque backdrop: white adds its light, black dims where it can be seen to. */
-    const expectOver = (picture: Picture, backdrop: ColorRepresentation, label: string): void => {
-      expectPlaces(picture, right, label, 'sky', 'ball')
-      const color = new Color(backdrop).toArray()
-      const white = sky('white').map((value, k) => value + opacity * (1 - color[k]))
-      expectClose(at(picture, 'white'), white, { relative: 2e-3 }, `${label}: white`)
-      const isBlack = color.every(value => value === 0)
-      expectPlaces(picture, isBlack ? bare : right, label, 'black')
-      const changes = at(picture, 'label').map((value, k) => value - sky('label')[k])
-      expectTrue(changes[0] > 0.3, `${label}: the label is not seen: ${changes.join(' ')}`)
-    }
-    renderer.setClearColor(0x336699)
-    expectOver(await view.draw(renderer), 0x336699, 'setClearColor')
-    renderer.setClearColor(0, 0)
-    scene.background = new Color(0x87ceeb)
-    expectOver(await view.draw(renderer), 0x87ceeb, 'scene.background')
-    scene.background = null
-    const solid = await t.createRenderer({ ...size, ...buffers, alpha: false })
-    const second = new View()
-    expectOver(await second.draw(solid), 0, 'alpha: false')
-    for (const each of [view, second]) each.atmosphere.dispose()
-  })
+      /** Objects over an opaque backdrop: white adds its light, black dims where it can be seen to. */
+      const expectOver = (picture: Picture, backdrop: ColorRepresentation, label: string): void => {
+        expectPlaces(picture, right, label, 'sky', 'ball')
+        const color = new Color(backdrop).toArray()
+        const white = sky('white').map((value, k) => value + opacity * (1 - color[k]))
+        expectClose(at(picture, 'white'), white, { relative: 2e-3 }, `${label}: white`)
+        const isBlack = color.every(value => value === 0)
+        expectPlaces(picture, isBlack ? bare : right, label, 'black')
+        const changes = at(picture, 'label').map((value, k) => value - sky('label')[k])
+        expectTrue(changes[0] > 0.3, `${label}: the label is not seen: ${changes.join(' ')}`)
+      }
+      renderer.setClearColor(0x336699)
+      expectOver(await view.draw(renderer), 0x336699, 'setClearColor')
+      renderer.setClearColor(0, 0)
+      scene.background = new Color(0x87ceeb)
+      expectOver(await view.draw(renderer), 0x87ceeb, 'scene.background')
+      scene.background = null
+      const solid = await t.createRenderer({ ...size, ...buffers, alpha: false })
+      const second = new View()
+      expectOver(await second.draw(solid), 0, 'alpha: false')
+      for (const each of [view, second]) each.atmosphere.dispose()
+    },
+    // Other depths WebGL has in `cameras`.
+    { backends: depth === 'reversed' ? ['webgpu', 'webgl'] : ['webgpu'] }
+  )
 }
 
 gpuTest("draws the sky in a target of one's own, whatever its alpha", async t => {

@@ -261,5 +261,7 @@ gpuTest(
     lighting.dispose()
     scenePass.dispose()
     atmosphere.dispose()
-  }
+  },
+  // The same numbers on both.
+  { backends: ['webgpu'] }
 )

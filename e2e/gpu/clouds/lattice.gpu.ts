@@ -90,11 +90,12 @@ gpuTest(
     pipeline.outputColorTransform = false
     pipeline.outputNode = node
     const misses: string[] = []
-    for (const name of ['overcast', 'stratocumulus'] as const) {
+    // Each view by the clouds that fill it: a deck towards the sun, patches straight up.
+    for (const [i, name] of (['stratocumulus', 'overcast'] as const).entries()) {
       const { parameters } = cloudPreset(name).at(0)
       const topAltitude = BASE + parameters.topAltitude - parameters.baseAltitude
       layers.at(0).set({ ...parameters, baseAltitude: BASE, topAltitude })
-      for (const { name: view, fov, pitch, square, longest } of views) {
+      for (const { name: view, fov, pitch, square, longest } of [views[i]]) {
         camera.fov = fov
         camera.rotation.x = pitch * degrees
         camera.updateProjectionMatrix()

@@ -46,67 +46,72 @@ const phases: Partial<CloudPhaseParameters>[] = [
   { forwardAsymmetry: 0, backwardAsymmetry: 0 }
 ]
 
-gpuTest('scatters sunlight like its float64 twin', async t => {
-  const renderer = await t.createRenderer()
-  for (const parameters of phases) {
-    const light = new CloudLightTable(parameters)
-    light.bake()
-    const table = solveCloudLight(light.phase)
-    for (const [layered, cosLight, filled] of [
-      [1, 0.7, 0.5],
-      [1, 0.03, 1],
-      [1, -0.2, 1],
-      [0, 0.4, 0.2],
-      [0.5, 0.9, 2]
-    ]) {
-      const inputs = rows(200, i => {
-        const through = depthAt(spread(i, 0))
-        const cosView = 2 * spread(i, 2) - 1
-        const sines = Math.sqrt((1 - cosView ** 2) * (1 - cosLight ** 2))
-        const cosViewLight = cosView * cosLight + sines * Math.cos(2 * Math.PI * spread(i, 3))
-        return [through * spread(i, 1), through, cosView, cosViewLight]
-      })
-      const results = await evaluateOnGpu(renderer, inputs, input =>
-        vec4(
-          cloudSource(light.nodes, {
-            depthToLight: input.x,
-            depthThrough: input.y,
-            depthAcross: input.y.mul(1.3),
-            depthToCamera: float(0.3),
-            viewChord: [float(0.3), input.x.mul(0.4)],
-            verticalChord: [input.y.mul(0.2), input.x],
-            filled: float(filled),
-            resolved: float(0.7),
-            layered: float(layered),
-            cosLight: float(cosLight),
-            cosView: input.z,
-            cosViewLight: input.w
+gpuTest(
+  'scatters sunlight like its float64 twin',
+  async t => {
+    const renderer = await t.createRenderer()
+    for (const parameters of phases) {
+      const light = new CloudLightTable(parameters)
+      light.bake()
+      const table = solveCloudLight(light.phase)
+      for (const [layered, cosLight, filled] of [
+        [1, 0.7, 0.5],
+        [1, 0.03, 1],
+        [1, -0.2, 1],
+        [0, 0.4, 0.2],
+        [0.5, 0.9, 2]
+      ]) {
+        const inputs = rows(200, i => {
+          const through = depthAt(spread(i, 0))
+          const cosView = 2 * spread(i, 2) - 1
+          const sines = Math.sqrt((1 - cosView ** 2) * (1 - cosLight ** 2))
+          const cosViewLight = cosView * cosLight + sines * Math.cos(2 * Math.PI * spread(i, 3))
+          return [through * spread(i, 1), through, cosView, cosViewLight]
+        })
+        const results = await evaluateOnGpu(renderer, inputs, input =>
+          vec4(
+            cloudSource(light.nodes, {
+              depthToLight: input.x,
+              depthThrough: input.y,
+              depthAcross: input.y.mul(1.3),
+              depthToCamera: float(0.3),
+              viewChord: [float(0.3), input.x.mul(0.4)],
+              verticalChord: [input.y.mul(0.2), input.x],
+              filled: float(filled),
+              resolved: float(0.7),
+              layered: float(layered),
+              cosLight: float(cosLight),
+              cosView: input.z,
+              cosViewLight: input.w
+            })
+          )
+        )
+        const expected = inputs.map(([depthToLight, depthThrough, cosView, cosViewLight]) =>
+          twin.cloudSource(light.phase, table, {
+            depthToLight,
+            depthThrough,
+            depthAcross: 1.3 * depthThrough,
+            depthToCamera: 0.3,
+            viewChord: [0.3, 0.4 * depthToLight],
+            verticalChord: [0.2 * depthThrough, depthToLight],
+            filled,
+            resolved: 0.7,
+            layered,
+            cosLight: cosLight,
+            cosView,
+            cosViewLight
           })
         )
-      )
-      const expected = inputs.map(([depthToLight, depthThrough, cosView, cosViewLight]) =>
-        twin.cloudSource(light.phase, table, {
-          depthToLight,
-          depthThrough,
-          depthAcross: 1.3 * depthThrough,
-          depthToCamera: 0.3,
-          viewChord: [0.3, 0.4 * depthToLight],
-          verticalChord: [0.2 * depthThrough, depthToLight],
-          filled,
-          resolved: 0.7,
-          layered,
-          cosLight: cosLight,
-          cosView,
-          cosViewLight
-        })
-      )
-      // Texels are half floats, and filtered at their positions' 1/256.
-      const found = inputs.map((_, i) => results[4 * i])
-      expectClose(found, expected, { absolute: 3e-4, relative: 0.01 }, `${layered} ${cosLight}`)
+        // Texels are half floats, and filtered at their positions' 1/256.
+        const found = inputs.map((_, i) => results[4 * i])
+        expectClose(found, expected, { absolute: 3e-4, relative: 0.01 }, `${layered} ${cosLight}`)
+      }
+      light.dispose()
     }
-    light.dispose()
-  }
-})
+  },
+  // The same numbers on both.
+  { backends: ['webgpu'] }
+)
 
 gpuTest('has the phase function of its float64 twin, in the aureole too', async t => {
   const renderer = await t.createRenderer()
@@ -128,33 +133,38 @@ gpuTest('has the phase function of its float64 twin, in the aureole too', async 
   light.dispose()
 })
 
-gpuTest('has bow and glory of droplets like the float64 twin', async t => {
-  const renderer = await t.createRenderer()
-  const radius = 9
-  const light = new DropletLightTable({ dropletRadius: radius })
-  const { depthScale } = scalePhase(light.phase)
-  const inputs = rows(300, i => {
-    const angle = Math.PI * spread(i, 2)
-    return [depthAt(spread(i, 0)), 0.3 * depthAt(spread(i, 1)), Math.cos(angle)]
-  })
-  const results = await evaluateOnGpu(renderer, inputs, input =>
-    light.nodes.fineStructure!({
-      depthToLight: input.x,
-      depthToCamera: input.y,
-      cosViewLight: input.z,
-      cosView: float(0),
-      cosLight: float(0),
-      altitude: float(1000)
+gpuTest(
+  'has bow and glory of droplets like the float64 twin',
+  async t => {
+    const renderer = await t.createRenderer()
+    const radius = 9
+    const light = new DropletLightTable({ dropletRadius: radius })
+    const { depthScale } = scalePhase(light.phase)
+    const inputs = rows(300, i => {
+      const angle = Math.PI * spread(i, 2)
+      return [depthAt(spread(i, 0)), 0.3 * depthAt(spread(i, 1)), Math.cos(angle)]
     })
-  )
-  inputs.forEach(([toLight, toCamera, cosine], i) => {
-    const depth = (toLight + toCamera) / depthScale
-    const expected = fineStructure(light.phase, radius, cosine, depth, toCamera)
-    const label = `cosine ${cosine}, depth ${depth}`
-    expectClose(results[4 * i + 2], expected, { absolute: 3e-4, relative: 0.02 }, label)
-  })
-  light.dispose()
-})
+    const results = await evaluateOnGpu(renderer, inputs, input =>
+      light.nodes.fineStructure!({
+        depthToLight: input.x,
+        depthToCamera: input.y,
+        cosViewLight: input.z,
+        cosView: float(0),
+        cosLight: float(0),
+        altitude: float(1000)
+      })
+    )
+    inputs.forEach(([toLight, toCamera, cosine], i) => {
+      const depth = (toLight + toCamera) / depthScale
+      const expected = fineStructure(light.phase, radius, cosine, depth, toCamera)
+      const label = `cosine ${cosine}, depth ${depth}`
+      expectClose(results[4 * i + 2], expected, { absolute: 3e-4, relative: 0.02 }, label)
+    })
+    light.dispose()
+  },
+  // The same numbers on both.
+  { backends: ['webgpu'] }
+)
 
 gpuTest('scatters light of sky and ground like its float64 twin', async t => {
   const renderer = await t.createRenderer()

@@ -1,12 +1,7 @@
-import {
-  aerialPerspective,
-  heightFieldShadow,
-  lightShafts,
-  type AirOccluder
-} from '@welkin/atmosphere'
+import { heightFieldShadow, type AirOccluder } from '@welkin/atmosphere'
 import { CloudLayers, CloudLightTable, cloudAirShadow, clouds, cloudWorldMap } from '@welkin/clouds'
-import { FloatType, Matrix4, Vector3 } from 'three'
-import { float, pass } from 'three/tsl'
+import { Matrix4, Vector3 } from 'three'
+import { float } from 'three/tsl'
 import { RenderPipeline, type WebGPURenderer } from 'three/webgpu'
 import { drawToFloat } from '../harness/atmosphere'
 import { worldMap } from '../harness/cloud-scene'
@@ -34,9 +29,6 @@ const COLUMNS = 8
 const meanOf = (picture: Picture, first: number, y: number): number =>
   Array.from({ length: COLUMNS }, (_, i) => picture.at(first + i, y)[1]).reduce((a, b) => a + b) /
   COLUMNS
-
-/** Frames in which shadow maps of the deck are drawn. */
-const SETTLED = 14
 
 /** Edge of the field of heights [m]. */
 const FIELD = 20_000
@@ -173,79 +165,6 @@ gpuTest(
     const dark = await draw()
     checkShadow(t, set, lit, dark, { 'shadow map': byMap })
     dispose()
-  },
-  { backends: ['webgpu'] }
-)
-
-gpuTest(
-  'draws clouds and their shafts for two cameras in a frame as for each alone',
-  async t => {
-    const renderer = await t.createRenderer(size)
-    const first = deckBelow(renderer, false)
-    const { scene, atmosphere, light } = first.set
-    const { z, width, height } = mountain
-    addBox(scene, [0, height / 2, z], [width, height, 100])
-    // Another camera 3 km to the side that looks the other way.
-    const camera = first.set.camera.clone()
-    camera.position.x = 3000
-    camera.lookAt(new Vector3(-0.5, -0.3, -1).add(camera.position))
-    camera.updateMatrixWorld()
-    const shafts = lightShafts(atmosphere, camera, light)
-    const scenePass = pass(scene, camera, { samples: 0, type: FloatType })
-    const [color, depth] = [scenePass.getTextureNode(), scenePass.getTextureNode('depth')]
-    const air = aerialPerspective(color, depth, camera, atmosphere, { shafts })
-    const [table, noise] = [new CloudLightTable(), new SparseNoise()]
-    const node = clouds(air, depth, camera, atmosphere, new CloudLayers([deck]), {
-      quality: coarse,
-      noise,
-      light: table,
-      extinction: () => float(0.05),
-      nightIlluminance: 0
-    })
-    node.time = 0
-    node.accumulates = false
-    shafts.add(cloudAirShadow(node))
-    const pipeline = new RenderPipeline(renderer)
-    pipeline.outputColorTransform = false
-    pipeline.outputNode = node
-    const pipelines = [first.pipeline, pipeline]
-    const drawIn = (each: RenderPipeline): Promise<Picture> =>
-      drawToFloat(renderer, () => each.render())
-    const [before, alone]: Picture[][] = [[], []]
-    for (const [i, each] of pipelines.entries()) {
-      for (let frame = 0; frame < SETTLED; frame++) {
-        await nextFrame()
-        before[i] = alone[i]
-        alone[i] = await drawIn(each)
-      }
-    }
-    const together: Picture[] = []
-    for (let frame = 0; frame < SETTLED; frame++) {
-      await nextFrame()
-      for (const [i, each] of pipelines.entries()) together[i] = await drawIn(each)
-    }
-    const difference = (a: Picture, b: Picture): number =>
-      a.data.reduce((sum, value, i) => sum + Math.abs(value - b.data[i]), 0)
-    expectTrue(difference(alone[0], alone[1]) > 0, 'the cameras see something else')
-    for (const [i, each] of [first.set.shafts, shafts].entries()) {
-      expectTrue(each.isActive, `shafts of camera ${i} are drawn`)
-      const sum = alone[i].data.reduce((total, value) => total + value, 0)
-      // Clouds are marched at other places in each frame.
-      const [apart, grain] = [together[i], before[i]].map(
-        other => difference(alone[i], other) / sum
-      )
-      t.note(
-        `camera ${i}: ${apart.toExponential(1)} of the light apart, grain ${grain.toExponential(1)}`
-      )
-      expectTrue(apart < 0.01 && apart <= 1.5 * grain, `camera ${i}: ${apart} of the light apart`)
-      each.enabled = false
-      await nextFrame()
-      const taken = difference(await drawIn(pipelines[i]), alone[i]) / sum
-      t.note(`${taken.toFixed(3)} is taken by shadows`)
-      // More than pictures of the same camera may be apart.
-      expectTrue(taken > 1.5 * grain, `camera ${i}: shadows take light`)
-    }
-    for (const owned of [node, pipeline, scenePass, shafts, table, noise, first]) owned.dispose()
   },
   { backends: ['webgpu'] }
 )

@@ -171,7 +171,8 @@ for (const [label, storm, least] of [
       dispose()
       set.dispose()
     },
-    { backends: storm.east > 0 ? ['webgpu'] : ['webgpu', 'webgl'] }
+    // The numbers of one place are the same on both, and so are those of others.
+    { backends: storm.sun > 0 ? ['webgpu', 'webgl'] : ['webgpu'] }
   )
 }
 

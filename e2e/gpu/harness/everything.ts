@@ -90,6 +90,7 @@ import {
 import { drawToFloat, random } from './atmosphere'
 import { worldMap } from './cloud-scene'
 import { coarse } from './cloud-view'
+import { filterLeast } from './filter-samples'
 import { nextFrame } from './graphics'
 import { readPicture, type Picture } from './picture'
 import { setShadowSize } from './shadow-size'
@@ -161,6 +162,7 @@ export class World {
   ) {
     const { atmosphere, camera } = this
     setShadowSize('least')
+    filterLeast()
     renderer.shadowMap.enabled = true
     const fogs = this.#addLayers(isMapped)
     this.#lights = this.#makeLights()

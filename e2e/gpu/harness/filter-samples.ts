@@ -9,6 +9,9 @@ declare global {
  */
 const FEW = { samples: 32, edge: 8 }
 
+/** As few as will do where reflections need no more than light of the sky. */
+const LEAST = { samples: 8, edge: 4 }
+
 /**
  * Has three, from now on, filter environments with an eighth of its samples, and a quarter of them for what is rough: with all, a
  * software renderer takes seconds for one, longer than for all else in most tests.
@@ -17,4 +20,9 @@ const FEW = { samples: 32, edge: 8 }
  */
 export function filterCoarsely(isCoarse: boolean): void {
   globalThis.filterSamples = isCoarse ? FEW : undefined
+}
+
+/** Has three filter environments with a quarter of those samples again, until the test ends: for when and whether there is light, not how much. */
+export function filterLeast(): void {
+  globalThis.filterSamples = LEAST
 }

@@ -116,44 +116,49 @@ gpuTest(
   { backends: ['webgpu'] }
 )
 
-gpuTest('the ground receives shadows of things', async t => {
-  const renderer = await t.createPlanetRenderer(SIZE)
-  renderer.shadowMap.enabled = true
-  const atmosphere = new Atmosphere()
-  atmosphere.place(PLACE)
-  atmosphere.setSunAngles(40, 90)
-  const terrain = new Terrain(atmosphere, level(0), { pageMemory: 20, seaLevel: -Infinity })
-  const sun = new SunDirectionalLight(atmosphere, 100)
-  sun.castShadow = true
-  sun.shadow.mapSize.setScalar(512)
-  Object.assign(sun.shadow.camera, {
-    left: -20,
-    right: 20,
-    top: 20,
-    bottom: -20,
-    near: 1,
-    far: 200
-  })
-  sun.shadow.camera.updateProjectionMatrix()
-  const scene = new Scene().add(terrain, sun, sun.target)
-  const { box, camera } = boxFromAbove(SIZE.width / SIZE.height)
-  scene.add(box)
-  terrain.update(renderer, camera, Infinity)
-  const row = async (): Promise<number[]> => {
-    const picture = await t.render(renderer, scene, camera, SIZE)
-    return Array.from({ length: SIZE.width }, (_, x) => luminance(picture, x, SIZE.height / 2))
-  }
-  const alone = await row()
-  // Told after a first frame, of which the material need not know: three has the shadow in the next but one.
-  terrain.receiveShadow = box.castShadow = true
-  await row()
-  expectBoxShadow(t, await row(), alone)
-  terrain.receiveShadow = false
-  const left = sharesOf(await row(), alone).slice(0, 26)
-  t.note(`when it no longer receives any, ${Math.min(...left).toFixed(4)} of the light at least`)
-  terrain.dispose()
-  if (!left.every(share => share > 0.99)) throw new Error('the shadow stays')
-})
+gpuTest(
+  'the ground receives shadows of things',
+  async t => {
+    const renderer = await t.createPlanetRenderer(SIZE)
+    renderer.shadowMap.enabled = true
+    const atmosphere = new Atmosphere()
+    atmosphere.place(PLACE)
+    atmosphere.setSunAngles(40, 90)
+    const terrain = new Terrain(atmosphere, level(0), { pageMemory: 20, seaLevel: -Infinity })
+    const sun = new SunDirectionalLight(atmosphere, 100)
+    sun.castShadow = true
+    sun.shadow.mapSize.setScalar(512)
+    Object.assign(sun.shadow.camera, {
+      left: -20,
+      right: 20,
+      top: 20,
+      bottom: -20,
+      near: 1,
+      far: 200
+    })
+    sun.shadow.camera.updateProjectionMatrix()
+    const scene = new Scene().add(terrain, sun, sun.target)
+    const { box, camera } = boxFromAbove(SIZE.width / SIZE.height)
+    scene.add(box)
+    terrain.update(renderer, camera, Infinity)
+    const row = async (): Promise<number[]> => {
+      const picture = await t.render(renderer, scene, camera, SIZE)
+      return Array.from({ length: SIZE.width }, (_, x) => luminance(picture, x, SIZE.height / 2))
+    }
+    const alone = await row()
+    // Told after a first frame, of which the material need not know: three has the shadow in the next but one.
+    terrain.receiveShadow = box.castShadow = true
+    await row()
+    expectBoxShadow(t, await row(), alone)
+    terrain.receiveShadow = false
+    const left = sharesOf(await row(), alone).slice(0, 26)
+    t.note(`when it no longer receives any, ${Math.min(...left).toFixed(4)} of the light at least`)
+    terrain.dispose()
+    if (!left.every(share => share > 0.99)) throw new Error('the shadow stays')
+  },
+  // WebGL has them in `cascades`.
+  { backends: ['webgpu'] }
+)
 
 /** A ridge 60 m high, from north to south through the place. */
 function ridge(atmosphere: Atmosphere): HeightSource {

@@ -54,7 +54,7 @@ gpuTest(
     camera.position.y = altitude
     const mountains = groundShadow(set.atmosphere, terrain, SQUARE)
     shafts.add(mountains)
-    for (const sun of [4, 8]) {
+    for (const sun of [4]) {
       set.atmosphere.setSunAngles(sun, 0)
       let most = 0
       for (const view of [4, 20, 172]) {
@@ -77,7 +77,9 @@ gpuTest(
     for (const owned of [mountains, terrain, set]) owned.dispose()
     const worst = Math.max(...errors)
     expectTrue(worst < 0.02, `lost light is off by ${worst}`)
-  }
+  },
+  // WebGL has a ridge's shadow on the ground in `light-paths`, and in the air in `atmosphere/shafts-height-field`.
+  { backends: ['webgpu'] }
 )
 
 gpuTest(

@@ -18,10 +18,3 @@ export const QUICK: Partial<DiffuseLightQuality> = {
   sun: { elevations: 8, azimuths: 8, steps: 6 },
   diffuse: { elevations: 5, azimuths: 4, steps: 4 }
 }
-
-/** Resolution of a solution in which nothing is scattered. */
-export const NONE: Partial<DiffuseLightQuality> = {
-  sun: { elevations: 2, azimuths: 1, steps: 1 },
-  diffuse: { elevations: 2, azimuths: 1, steps: 1 },
-  orders: 2
-}

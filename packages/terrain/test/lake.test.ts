@@ -22,29 +22,36 @@ it('lies at its level, bends with the planet, and knows how deep it is', () => {
   const { position, normal, depth } = lake.geometry.attributes
   const point = new Vector3()
   const up = new Vector3()
+  // Greatest of all points': so many expectations would take seconds.
+  const most = { height: 0, normal: 0, depth: 0 }
   let farthest = 0
   for (let i = 0; i < position.count; i++) {
     point.fromBufferAttribute(position, i).applyMatrix4(lake.matrixWorld)
-    // Float32 has 20 km to 1 mm.
-    expect(Math.abs(ellipsoid.heightAt(point) - 406)).toBeLessThan(5e-3)
+    most.height = Math.max(most.height, Math.abs(ellipsoid.heightAt(point) - 406))
     const off = up.fromBufferAttribute(normal, i).distanceTo(ellipsoid.surfaceNormal(point))
-    expect(off).toBeLessThan(1e-6)
-    expect(depth.getX(i)).toBeCloseTo(26, 3)
+    most.normal = Math.max(most.normal, off)
+    most.depth = Math.max(most.depth, Math.abs(depth.getX(i) - 26))
     farthest = Math.max(farthest, point.distanceTo(lake.center))
   }
+  // Float32 has 20 km to 1 mm.
+  expect(most.height).toBeLessThan(5e-3)
+  expect(most.normal).toBeLessThan(1e-6)
+  expect(most.depth).toBeLessThan(5e-4)
   expect(farthest).toBeGreaterThan(19_900)
   expect(farthest).toBeLessThan(20_010)
   // All triangles face up.
   const corners = [0, 1, 2].map(() => new Vector3())
   const { index } = lake.geometry
+  let least = Infinity
   for (let i = 0; i < index!.count; i += 3) {
     for (const [n, corner] of corners.entries()) {
       corner.fromBufferAttribute(position, index!.getX(i + n))
     }
     const [a, b, c] = corners
     const facing = b.sub(a).cross(c.sub(a)).dot(up.fromBufferAttribute(normal, 0))
-    expect(facing).toBeGreaterThan(0)
+    least = Math.min(least, facing)
   }
+  expect(least).toBeGreaterThan(0)
 })
 
 it('follows a world that is placed anywhere, in any units', () => {

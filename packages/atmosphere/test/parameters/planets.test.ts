@@ -13,8 +13,9 @@ import { describe, expect, it } from 'vitest'
 import { spectralToLinearSRGB } from '../../src/air/cpu/color'
 import { groundRadiance, skyRadiance } from '../../src/scattering/cpu/scattering'
 import { solveDiffuseLight } from '../../src/diffuseLight/cpu/solveDiffuseLight'
+import { DIFFUSE_SIZE, DIFFUSE_TILES } from '../../src/tables/tableSizes'
 import { lightTransmittance } from '../../src/transmittance/cpu/transmittance'
-import { NONE, QUICK } from '../solvedLight'
+import { QUICK } from '../solvedLight'
 
 /** Part of the light of a sun at the zenith that arrives at the ground. */
 const transmittanceTo = (parameters: AtmosphereParameters): number[] =>
@@ -82,7 +83,9 @@ describe('planets', () => {
     const moon = airlessParameters()
     expect(moon.isAirless).toBe(true)
     expect(marsParameters({ dust: 0 }).isAirless).toBe(false)
-    const light = solveDiffuseLight(moon, NONE)
+    // Light of its air, of which there is none: ground has sunlight alone.
+    const [columns, rows] = DIFFUSE_SIZE
+    const light = { values: new Float32Array(4 * columns * rows * DIFFUSE_TILES) }
     const ray = { radius: moon.bottomRadius + 2, cosView: 0.3, cosLight: 0.5, cosViewLight: 0.6 }
     expect(skyRadiance(moon, light, ray)).toEqual([0, 0, 0, 0])
     groundRadiance(moon, light, 0.5).forEach((value, i) => {

@@ -12,7 +12,7 @@ import { opticalDepth } from '../../src/transmittance/cpu/transmittance'
 import { cosine, number } from '../arbitraries'
 
 const earth = new AtmosphereParameters()
-const runs = { seed: 20260621, numRuns: 60 }
+const runs = { seed: 20260621, numRuns: 30 }
 
 /** Rays from within the air, the light at any azimuth to them and up to 6° below the horizon. */
 const rays: fc.Arbitrary<RayNumbers> = fc
