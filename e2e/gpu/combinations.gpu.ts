@@ -4,7 +4,7 @@ import { featureSize, FeatureStage } from './harness/features'
 import { gpuTest } from './harness/gpu-test'
 import type { Picture } from './harness/picture'
 import { featureNames, hours, predict, seen, type FeatureName, type Hour } from './harness/predict'
-import { watchFragmentShaders } from './harness/shaders'
+import { watchShaders } from './harness/shaders'
 
 const SEED = 20_260
 const COUNT = 60
@@ -179,7 +179,7 @@ gpuTest(
   'pairs and triples of features draw what each of them draws alone',
   async t => {
     const renderer = await t.createRenderer(featureSize)
-    const shaders = watchFragmentShaders(renderer)
+    const shaders = watchShaders(renderer)
     const stage = new FeatureStage(renderer)
     await stage.prepare()
     const sets = combinations()
