@@ -122,8 +122,13 @@ export interface ValleyCost {
   cpuMs: number
 }
 
+/** Makes flashes as bright as in nature, and of a time that pictures gather. */
+export function bareFlashes({ storm }: Valley): void {
+  Object.assign(storm, { limit: null, exposure: FLASH.seconds })
+}
+
 /** Has a flash to the ground stay in sight of the camera, at its brightest, or has none. */
-function holdFlash({ storm, camera }: Valley, isHeld: boolean): void {
+export function holdFlash({ storm, camera }: Valley, isHeld: boolean): void {
   // Its clock stands: no flash begins of itself, and one of before is over.
   storm.time = (storm.time ?? 0) + 60
   if (!isHeld) return
@@ -167,7 +172,7 @@ export async function timeValley(
   const times = new PassTimes()
   renderer.inspector = times
   const valley = new Valley(renderer, { ...openingState, flashes: true })
-  Object.assign(valley.storm, { limit: null, exposure: FLASH.seconds })
+  bareFlashes(valley)
   await valley.bake(renderer)
   valley.camera.aspect = size[0] / size[1]
   valley.camera.updateProjectionMatrix()
