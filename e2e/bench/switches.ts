@@ -54,7 +54,7 @@ const SWITCHES: readonly Switch[] = [
     state: { weather: 'shower', hour: 12.3, date: Date.UTC(2026, 10, 1), wetGround: false },
     least: 0.002
   },
-  { name: 'flashes', state: { weather: 'storm' }, isStruck: true, least: 0.1 },
+  { name: 'flashes', state: { ...NIGHT, weather: 'storm' }, isStruck: true, least: 0.1 },
   { name: 'wetGround', state: { weather: 'snow' }, least: 0.1 },
   { name: 'moon', state: NIGHT, least: 0.1 },
   { name: 'moonlight', state: NIGHT, least: 0.05 },
