@@ -7,6 +7,7 @@ import type { ValleyName } from '../../stories/src/valley/views'
 import { nextFrame, release, type HeadlessDevice } from '../headless/device'
 import { readPicture } from '../stills/readPicture'
 import { rowsOf } from './rows'
+import { bareFlashes, holdFlash } from './valley'
 
 /** Frames after a switch, in which shadows, light of the sky and exposure follow. */
 const FRAMES = 40
@@ -33,6 +34,8 @@ interface Switch {
   state?: Partial<ValleyState>
   view?: ValleyName
   isTurning?: true
+  /** A flash is asked for before each picture, and lasts. */
+  isStruck?: true
   /** Least share of the pixels that change. */
   least: number
 }
@@ -51,6 +54,7 @@ const SWITCHES: readonly Switch[] = [
     state: { weather: 'shower', hour: 12.3, date: Date.UTC(2026, 10, 1), wetGround: false },
     least: 0.002
   },
+  { name: 'flashes', state: { ...NIGHT, weather: 'storm' }, isStruck: true, least: 0.1 },
   { name: 'wetGround', state: { weather: 'snow' }, least: 0.1 },
   { name: 'moon', state: NIGHT, least: 0.1 },
   { name: 'moonlight', state: NIGHT, least: 0.05 },
@@ -72,7 +76,7 @@ const SWITCHES: readonly Switch[] = [
   { name: 'motionBlur', isTurning: true, least: 0.01 },
   { name: 'antialiasing', value: 'edges', least: 0.005 },
   { name: 'antialiasing', value: 'fxaa', least: 0.005 },
-  // SMAA asks for a browser's `Image`.
+  { name: 'antialiasing', value: 'smaa', least: 0.005 },
   { name: 'antialiasing', value: 'traa', least: 0.005 },
   { name: 'antialiasing', value: 'taau', least: 0.01 },
   { name: 'quality', value: 'low', state: { quality: 'medium' }, least: 0.01 },
@@ -136,14 +140,19 @@ export async function measureSwitches(
     paused: true
   }
   const valley = new Valley(renderer, base)
+  bareFlashes(valley)
   await valley.bake(renderer)
   valley.camera.aspect = size[0] / size[1]
   valley.camera.updateProjectionMatrix()
   const target = new RenderTarget(...size, { depthBuffer: false })
 
-  const draw = async (state: ValleyState, { view, isTurning }: Switch): Promise<Uint8Array> => {
+  const draw = async (
+    state: ValleyState,
+    { view, isTurning, isStruck }: Switch
+  ): Promise<Uint8Array> => {
     valley.set(state, true)
     valley.lookFrom(view ?? 'village')
+    if (isStruck) holdFlash(valley, state.flashes)
     for (let i = 0; i < FRAMES; i++) {
       nextFrame()
       valley.time = 100

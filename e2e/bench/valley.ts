@@ -122,9 +122,13 @@ export interface ValleyCost {
   cpuMs: number
 }
 
+/** Makes flashes as bright as in nature, and of a time that pictures gather. */
+export function bareFlashes({ storm }: Valley): void {
+  Object.assign(storm, { limit: null, exposure: FLASH.seconds })
+}
+
 /** Has a flash to the ground stay in sight of the camera, at its brightest, or has none. */
-function holdFlash({ storm, camera }: Valley, isHeld: boolean): void {
-  if (storm === undefined) throw new Error('valley: no lightning')
+export function holdFlash({ storm, camera }: Valley, isHeld: boolean): void {
   // Its clock stands: no flash begins of itself, and one of before is over.
   storm.time = (storm.time ?? 0) + 60
   if (!isHeld) return
@@ -167,9 +171,8 @@ export async function timeValley(
   renderer.toneMapping = CustomToneMapping
   const times = new PassTimes()
   renderer.inspector = times
-  // With lightning, for which the story asks first.
   const valley = new Valley(renderer, { ...openingState, flashes: true })
-  Object.assign(valley.storm ?? {}, { limit: null, exposure: FLASH.seconds })
+  bareFlashes(valley)
   await valley.bake(renderer)
   valley.camera.aspect = size[0] / size[1]
   valley.camera.updateProjectionMatrix()
@@ -201,7 +204,7 @@ export async function timeValley(
       const read = await times.read(renderer)
       if (frame >= WARM_UP) passes.push(...read.passes)
     }
-    if (valley.storm?.isFlashing !== (flash === true)) throw new Error('valley: flash is amiss')
+    if (valley.storm.isFlashing !== (flash === true)) throw new Error('valley: flash is amiss')
     const shares = sharesOf(passes, state).map(([name, ms]) => [name, ms / often] as const)
     return [shares, median(cpu.slice(WARM_UP))]
   }

@@ -24,13 +24,13 @@ const layer = (name: FeatureName, passes = none): fc.Arbitrary<Layer> =>
 
 it('has what layered light amounts to in its range', () => {
   const sets = [
-    ['stars', 'airglow', 'rain'],
+    ['stars', 'airglow', 'drops'],
     ['stars', 'moon', 'distanceFog'],
-    ['milkyWay', 'clouds', 'rain'],
-    ['airglow', 'lightning', 'rain'],
+    ['milkyWay', 'clouds', 'drops'],
+    ['airglow', 'lightning', 'drops'],
     ['moon', 'clouds', 'lightning']
   ] as const
-  const opaque = new Set<FeatureName>(['moon', 'distanceFog', 'clouds', 'rain'])
+  const opaque = new Set<FeatureName>(['moon', 'distanceFog', 'clouds', 'drops'])
   for (const names of sets) {
     const layers = names.map(name => layer(name, opaque.has(name) ? share : none)) as [
       fc.Arbitrary<Layer>,
@@ -110,7 +110,7 @@ it.each([
     1,
     [
       ['nightLight', 2],
-      ['rain', 0.8]
+      ['drops', 0.8]
     ],
     0.7
   ]

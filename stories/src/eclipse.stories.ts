@@ -1,6 +1,6 @@
 import type { Meta, StoryObj } from '@storybook/html-vite'
 import { createEclipse } from './eclipse.scene'
-import type { MoonArgs } from './moon.scene'
+import { sceneKey, type MoonArgs } from './moon.scene'
 import moonMeta from './moon.stories'
 import { mount } from './mount'
 import { storyCode } from './storyCode'
@@ -9,7 +9,7 @@ const code = storyCode(['quickStart.ts', 'quick start'], ['moon.scene.ts', 'moon
 
 const meta: Meta<MoonArgs> = {
   title: 'Eclipse',
-  render: mount(createEclipse, code),
+  render: mount(createEclipse, code, sceneKey),
   argTypes: moonMeta.argTypes,
   args: {
     ...moonMeta.args,

@@ -46,6 +46,9 @@ export interface MoonArgs extends RendererArgs {
   mapSize: number
 }
 
+/** Key of what takes a new scene. */
+export const sceneKey = ({ lights, mapSize }: MoonArgs): string => `${lights} ${mapSize}`
+
 const GROUND_RADIUS = 15_000
 
 /** Suffices for a small picture, and takes a sixteenth of the time [texels]. */

@@ -1,5 +1,5 @@
 import type { Meta, StoryObj } from '@storybook/html-vite'
-import { createMoon } from './moon.scene'
+import { createMoon, sceneKey } from './moon.scene'
 import type { MoonArgs } from './moon.scene'
 import { mount } from './mount'
 import { rendererArgTypes, timeArgTypes } from './storyArgs'
@@ -9,7 +9,7 @@ const code = storyCode(['quickStart.ts', 'quick start'], ['moon.scene.ts', 'moon
 
 const meta: Meta<MoonArgs> = {
   title: 'Moon phases',
-  render: mount(createMoon, code),
+  render: mount(createMoon, code, sceneKey),
   argTypes: {
     longitude: {
       name: 'Longitude [°]',
@@ -41,13 +41,13 @@ const meta: Meta<MoonArgs> = {
       name: 'Land lit by',
       options: ['none', 'sun', 'moon', 'both'],
       control: 'select',
-      description: 'None leaves the sky alone. Takes effect when the story is loaded'
+      description: 'None leaves the sky alone; another choice takes a new scene, which fades in'
     },
     mapSize: {
       name: 'Map of its ground [texels]',
       options: [256, 512, 1024, 2048],
       control: 'select',
-      description: 'Takes effect when the story is loaded'
+      description: 'Another one takes a new scene, which fades in'
     },
     ...rendererArgTypes
   },

@@ -7,12 +7,12 @@ import { storyCode } from './storyCode'
 
 const meta: Meta<ShellArgs> = {
   title: 'Shell',
-  render: mount(createShell, storyCode(['shell.scene.ts', 'shell'])),
+  render: mount(createShell, storyCode(['shell.scene.ts', 'shell']), ({ model }) => model),
   argTypes: {
     view: { name: 'View', table: { disable: true } },
     model: {
       name: 'Model',
-      description: 'From tables, or a short march without any; takes effect on reload',
+      description: 'From tables, or a short march without any: a new scene, which fades in',
       options: ['tables', 'single-scattering'],
       control: 'inline-radio'
     },

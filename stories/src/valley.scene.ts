@@ -43,7 +43,7 @@ export async function createValley(
     ? undefined
     : new Explorer(camera, canvas, {
         groundAt: place => valley.groundAt(place),
-        ...valleyFooting(() => current)
+        ...valleyFooting(() => current, valley.trunkAt)
       })
   const shown = (): ValleyState => ({ ...stateOf(current), hour: shownHour.byHand })
   /** Changes by which a feature is off that is measured. */

@@ -28,7 +28,7 @@ const factor = (name: string, description: string): object => ({
 
 const meta: Meta<ValleyArgs> = {
   title: 'Valley, all day',
-  render: mount(createValley, code, ({ flashes }) => String(flashes)),
+  render: mount(createValley, code),
   argTypes: {
     view: {
       name: 'Place',
@@ -74,8 +74,7 @@ const meta: Meta<ValleyArgs> = {
     wetGround: part('Wet ground and snow cover'),
     flashes: {
       ...part('Lightning'),
-      description:
-        'In storms; makes the scene anew. Off at first: flashes may harm people with photosensitive epilepsy'
+      description: 'In storms. Off at first: flashes may harm people with photosensitive epilepsy'
     },
     moon: part('Moon'),
     moonlight: part('Moonlight on the land'),

@@ -54,6 +54,20 @@ describe('sliders of the sandbox', () => {
     }
   })
 
+  it('set all that an atmosphere can be told, each of them something', () => {
+    const { init } = parametersOf(presets.earth, EARTH)
+    // Spectra have the wavelengths of the default.
+    const fields = Object.keys(new AtmosphereParameters()).filter(
+      name => name !== 'wavelengths' && name !== 'spectralToXYZ'
+    )
+    expect(Object.keys(init).toSorted()).toEqual(fields.toSorted())
+    const dead = ranges.filter(({ slider, min, max }) => {
+      const moved = { ...presets.earth, [slider]: presets.earth[slider] === min ? max : min }
+      return JSON.stringify(parametersOf(moved, EARTH).init) === JSON.stringify(init)
+    })
+    expect(dead).toEqual([])
+  })
+
   it('say what they move', () => {
     const { notes } = parametersOf({ ...presets.earth, radius: 1000, thickness: 800 }, EARTH)
     expect(notes).toEqual(['Thickness [m]: 800000 is shown as 499000'])

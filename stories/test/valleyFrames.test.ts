@@ -20,7 +20,7 @@ const groundCover = (): number => (water.mock.contexts[0] as SurfaceWater).snow
 vi.spyOn(LocalExposure.prototype, 'update').mockReturnValue(undefined)
 vi.spyOn(SkyLightMap.prototype, 'update').mockReturnValue(undefined)
 vi.spyOn(LakeMirror.prototype, 'update').mockReturnValue(undefined)
-const valley = new Valley(renderer, { ...openingState, flashes: true, quality: 'low' })
+const valley = new Valley(renderer, { ...openingState, quality: 'low' })
 const { air, atmosphere, pipeline } = valley
 pipeline.render = () => {}
 // As of a picture that is darker than the last.
@@ -54,11 +54,14 @@ it.each(['moonlight', 'shadows', 'lamps', 'autoExposure', 'reflections'] as cons
 it('has lightning in storms, where it was asked for', () => {
   const isStruck = (changes: Partial<ValleyState>): boolean => {
     valley.set({ ...openingState, flashes: true, quality: 'low', ...changes }, true)
-    return valley.storm!.enabled
+    return valley.storm.enabled
   }
   expect(isStruck({ weather: 'fair' })).toBe(false)
   expect(isStruck({ weather: 'storm' })).toBe(true)
   expect(isStruck({ weather: 'storm', clouds: false })).toBe(false)
+  // Switched while it is shown.
+  expect(isStruck({ weather: 'storm', flashes: false })).toBe(false)
+  expect(isStruck({ weather: 'storm' })).toBe(true)
 })
 
 it('has the ground wet or white only where that is on', () => {

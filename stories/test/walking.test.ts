@@ -1,10 +1,11 @@
-import { BoxGeometry, Mesh, Vector3 } from 'three'
+import { BoxGeometry, Color, Matrix4, Mesh, Vector3 } from 'three'
 import { describe, expect, it } from 'vitest'
 import { footingOn } from '../src/importedModel/footing'
 import { topOf } from '../src/moving/obstacles'
 import { groundHeight } from '../src/valley/ground'
 import { valleyFooting } from '../src/valley/footing'
 import { LAKE } from '../src/valley/places'
+import { trunkTops } from '../src/valley/trunks'
 import { outlines } from '../src/valley/village'
 import { explore } from './explore'
 
@@ -52,6 +53,53 @@ describe('walls', () => {
     expect(on(new Vector3(0, 0, -10))).toBeCloseTo(6)
     expect(on(new Vector3(0, 0, -7.7))).toBeCloseTo(6)
     expect(on(new Vector3(0, 0, -7.5))).toBe(0)
+  })
+})
+
+describe('trees', () => {
+  const places = [
+    [0.4, -8],
+    [5, 3],
+    [-4.1, -3.9]
+  ] as const
+  const trees = places.map(([x, z], i) => ({
+    matrix: new Matrix4().makeScale(1 + i, 2, 1 + i).setPosition(x, -1, z),
+    color: new Color()
+  }))
+  const trunkAt = trunkTops(trees, () => 7)
+
+  it('have trunks as wide as they are large, with room for a body', () => {
+    for (const [i, [x, z]] of places.entries()) {
+      const radius = 0.3 * (1 + i)
+      for (const [dx, dz] of [
+        [1, 0],
+        [0, 1],
+        [-1, 0],
+        [0, -1]
+      ] as const) {
+        const at = (way: number): number => trunkAt({ x: x + way * dx, z: z + way * dz })
+        expect(at(radius + 0.5)).toBe(11)
+        expect(at(radius + 0.7)).toBe(-Infinity)
+      }
+    }
+  })
+
+  it('are walked around', () => {
+    const footingAt = (place: Vector3): number => Math.max(trunkAt(place), 7)
+    const { camera, run } = walk({ footingAt }, 0, 0)
+    for (let i = 0; i < 60; i++) {
+      run(0.1)
+      expect(camera.position.y).toBeCloseTo(8.7)
+      expect(trunkAt(camera.position)).toBe(-Infinity)
+    }
+    expect(camera.position.z).toBeLessThan(-11)
+  })
+
+  it('of the valley are in the way while they are shown', () => {
+    const options = valleyFooting(() => ({ village: false, water: false }), trunkAt)
+    const [x, z] = places[0]
+    expect(options.footingAt(new Vector3(x, 0, z))).toBe(11)
+    expect(options.footingAt(new Vector3(x + 3, 0, z))).toBe(groundHeight(x + 3, z))
   })
 })
 

@@ -29,6 +29,7 @@ import { starDirection } from '../../../packages/atmosphere/src/stars/starCells'
 import { luminanceOf } from '../../../packages/atmosphere/src/parameters/photometry'
 import { starIrradiance } from '../../../packages/atmosphere/src/stars/starBrightness'
 import {
+  layerInPixel,
   vanRhijnFactors,
   thinLayerVanRhijnFactor
 } from '../../../packages/atmosphere/src/night/tsl/airglow'
@@ -252,6 +253,40 @@ gpuTest(
   },
   { backends: ['webgpu'] }
 )
+
+gpuTest('has airglow at a far limb as a pixel sees it at once', async t => {
+  const [altitude, width, bottomRadius] = [96_000, 4000, 6_378_137]
+  const radius = bottomRadius + 2e7
+  const cosOf = (lowest: number): number => -Math.sqrt(1 - ((bottomRadius + lowest) / radius) ** 2)
+  const distance = Math.abs(radius * cosOf(altitude))
+  /** Mean over a pixel of a width, which is square and stands upright [m]. */
+  const meanOver = (lowest: number, side: number): number => {
+    const places = Array.from({ length: 12 }, (_, i) => lowest + ((i + 0.5) / 12 - 0.5) * side)
+    const factors = places.map(place =>
+      vanRhijnFactor({ altitude, width }, radius, cosOf(place), bottomRadius, 2 * radius)
+    )
+    return factors.reduce((sum, factor) => sum + factor, 0) / 12
+  }
+  const side = 40_000
+  const pixel = (Math.SQRT2 * side) / distance
+  const lowest = [70_000, 80_000, 90_000, 100_000]
+  const gpu = await t.evaluate(
+    lowest.map(place => [radius - bottomRadius, cosOf(place), pixel, 0]),
+    input => {
+      const nodes = { altitude: float(altitude), width: float(width) }
+      const wide = layerInPixel(nodes, input.x, input.y, float(bottomRadius), input.z)
+      const gains = vanRhijnFactors(wide, input.x, input.y, float(bottomRadius), null)
+      return gains.down.add(gains.up)
+    }
+  )
+  const found = lowest.map((_, i) => gpu[4 * i])
+  const exact = lowest.map(place => meanOver(place, side))
+  t.note(`${found.map(each => each.toFixed(1))} for ${exact.map(each => each.toFixed(1))}`)
+  found.forEach((value, i) => {
+    const label = `${lowest[i]} m: ${value}, not ${exact[i]}`
+    expectTrue(Math.abs(value / exact[i] - 1) < 0.3, label)
+  })
+})
 
 gpuTest('has airglow as bright as its layer is long', async t => {
   const [altitude, width, bottomRadius] = [96_000, 4000, 6_378_137]

@@ -6,7 +6,7 @@ import { drawToFloat } from '../harness/atmosphere'
 import { expectTrue } from '../harness/expect'
 import { gpuTest } from '../harness/gpu-test'
 import type { Picture } from '../harness/picture'
-import { watchFragmentShaders } from '../harness/shaders'
+import { watchShaders } from '../harness/shaders'
 import { addBox, expectSame, stage, stageSize as size } from '../harness/shaft-stage'
 
 gpuTest(
@@ -87,7 +87,7 @@ gpuTest(
   "surfaces have the shadows of three's cascades from one map, with one texture in place of four",
   async t => {
     const renderer = await t.createRenderer(size)
-    const shaders = watchFragmentShaders(renderer)
+    const shaders = watchShaders(renderer)
     const drawn: { picture: Picture; textures: number }[] = []
     for (const makes of [null, CSMShadowNode, CascadedShadowNode]) {
       const { scene, camera, light, dispose } = stage(renderer, 25)

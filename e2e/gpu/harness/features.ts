@@ -15,6 +15,7 @@ import {
   proceduralStars,
   rainfall,
   SkyLightProbe,
+  snowfall,
   Stars,
   starsOverlay,
   SunDirectionalLight,
@@ -22,7 +23,7 @@ import {
   surfaceLighting
 } from '@welkin/atmosphere'
 import type { Moon, SkyLayer, SurfaceLightingNode } from '@welkin/atmosphere'
-import { CloudLayers, clouds, lightning } from '@welkin/clouds'
+import { CloudLayers, clouds, lightning, precipitationShafts } from '@welkin/clouds'
 import type { CloudQuality } from '@welkin/clouds'
 import { Terrain } from '@welkin/terrain'
 import {
@@ -119,7 +120,8 @@ export class FeatureStage {
   readonly #shafts
   readonly #terrain
   readonly #tiles
-  readonly #rain
+  /** Rain and snow before the camera. */
+  readonly #drops
   readonly #storm
   /** Strength of the ambient occlusion. */
   readonly #occlusion = uniform(0)
@@ -167,7 +169,8 @@ export class FeatureStage {
       shafts: aerialPerspective(drawn, depth, camera, atmosphere, { shafts })
     }
     const noise = new SparseNoise()
-    const options = { quality: fine, noise, time: 0, accumulates: false }
+    const precipitation = precipitationShafts()
+    const options = { quality: fine, noise, time: 0, accumulates: false, precipitation }
     this.#clouds = clouds(this.#air.shafts, depth, camera, atmosphere, this.#cloudLayers, options)
     const storm = lightning(this.#clouds, { limit: null, exposure: EXPOSURE, time: 0, seed: 9 })
     this.#storm = storm
@@ -175,11 +178,11 @@ export class FeatureStage {
     storm.addEventListener('strike', () => (storm.time = EXPOSURE))
     storm.strike({ kind: 'ground', at: new Vector3(300, 0, -3000) })
     const weather = { lights: [sun, sky], depth, depthCamera: camera, maxParticles: 4000, time: 10 }
-    this.#rain = rainfall(atmosphere, { rate: 0, ...weather })
+    this.#drops = [rainfall, snowfall].map(falls => falls(atmosphere, { rate: 0, ...weather }))
     this.#pipeline = new RenderPipeline(renderer)
     this.#pipeline.outputColorTransform = false
     this.#owned.push(sun, moonlight, nightLight, shafts, noise, material)
-    this.#owned.push(tower.geometry, floor.geometry, storm, this.#rain)
+    this.#owned.push(tower.geometry, floor.geometry, storm, ...this.#drops)
   }
 
   /** A box that is not lit by its material, as a photographed one, and the light on it. */
@@ -252,12 +255,14 @@ export class FeatureStage {
     this.#lights.moonlight.intensity = on('moonlight')
     this.#lights.nightLight.intensity = on('nightLight')
     this.#shafts.enabled = on('shafts') === 1
-    this.#cloudLayers.at(0).set({ coverage: on('clouds') })
+    // They rain.
+    const falling = on('clouds') === 1 ? { rate: 3 } : null
+    this.#cloudLayers.at(0).set({ coverage: on('clouds'), precipitation: falling })
     this.#occlusion.value = on('occlusion')
     this.#tiles.strength = on('surfaceLighting')
     this.#terrain.visible = on('terrain') === 1
     this.#storm.enabled = on('lightning') === 1
-    this.#rain.rate = 25 * on('rain')
+    for (const [i, rate] of [25, 1].entries()) this.#drops[i].rate = rate * on('drops')
     const isThere = (name: FeatureName): boolean =>
       names.includes(name) || (others === 'off' && name !== 'ground')
     this.#compile(featureNames.filter(isThere))
@@ -285,8 +290,8 @@ export class FeatureStage {
     const starry = names.includes('starsOverlay')
       ? starsOverlay(picture, this.#depth, this.#camera, atmosphere, dimming)
       : picture
-    this.#pipeline.outputNode = names.includes('rain')
-      ? precipitationOverlay(rtt(starry, null, null, exactly), this.#camera, [this.#rain])
+    this.#pipeline.outputNode = names.includes('drops')
+      ? precipitationOverlay(rtt(starry, null, null, exactly), this.#camera, this.#drops)
       : starry
     this.#pipeline.needsUpdate = true
   }

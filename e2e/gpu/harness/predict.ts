@@ -35,7 +35,7 @@ export const features = {
   distanceFog: 'medium',
   clouds: 'medium',
   lightning: 'flash',
-  rain: 'drops'
+  drops: 'drops'
 } as const satisfies Record<string, Kind>
 
 export type FeatureName = keyof typeof features
@@ -78,7 +78,7 @@ export const seen: Readonly<Record<FeatureName, { at: readonly Hour[]; share: nu
   distanceFog: { at: bright, share: 0.4 },
   clouds: { at: bright, share: 0.3 },
   lightning: { at: [night], share: 0.05 },
-  rain: { at: bright, share: 0.1 }
+  drops: { at: bright, share: 0.1 }
 }
 
 /** Least and greatest that a number may be. */

@@ -23,7 +23,7 @@ import { coarse } from '../harness/cloud-view'
 import { gpuTest } from '../harness/gpu-test'
 import { levelGround } from '../harness/ground'
 import { nextFrame } from '../harness/graphics'
-import { watchFragmentShaders } from '../harness/shaders'
+import { watchShaders } from '../harness/shaders'
 
 /** Textures that a stage may sample on WebGPU's default limits and on WebGL2. */
 const LIMIT = 16
@@ -80,7 +80,7 @@ gpuTest(
     scene.backgroundNode = skyBackground(atmosphere)
     scene.fogNode = aerialPerspectiveFog(atmosphere)
     scene.add(sun, sun.target, new SkyLightProbe(atmosphere), terrain)
-    const shaders = watchFragmentShaders(renderer)
+    const shaders = watchShaders(renderer)
     await nextFrame()
     renderer.setRenderTarget(new RenderTarget(16, 16))
     renderer.render(scene, camera)

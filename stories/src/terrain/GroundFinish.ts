@@ -45,7 +45,7 @@ export class GroundFinish {
   ) {
     const picture = (this.#picture = withDepth(color, scenePass))
     const exposure = (this.#exposure = autoExposure(picture, atmosphere))
-    const seen = { scenePass, depth, picture, exposure, clouds, standsStill: true }
+    const seen = { scenePass, depth, picture, exposure, clouds }
     this.#finish = new PictureFinish(renderer, pipeline, camera, seen)
     this.#elapsed = frameClock(isStill)
   }

@@ -4,11 +4,12 @@ import { disposeMeshes } from '../scene'
 import type { ValleyPrecipitation } from './falling'
 import { createBirches, createForest, createGrove } from './forest'
 import { drawFromNear } from './drawOrder'
-import { createGround } from './ground'
+import { createGround, groundHeight } from './ground'
 import { OpenSky } from './OpenSky'
 import { Relief } from './relief'
 import type { StreetLamps } from './StreetLamps'
 import type { Trees } from './Trees'
+import { trunkTops } from './trunks'
 import { outlines } from './village'
 
 /** Quads of the ground along a side, by quality. */
@@ -46,6 +47,7 @@ export class Land extends Group {
   #relief?: Relief
   #sky?: OpenSky
   #trees: readonly Trees[] = []
+  #trunks?: ReturnType<typeof trunkTops> | undefined
 
   constructor(falling: ValleyPrecipitation, lamps: StreetLamps) {
     super()
@@ -64,6 +66,7 @@ export class Land extends Group {
     const lamplight = this.#lamps.reflected()
     const { water } = this.#falling
     const trees = TREES[quality]
+    this.#trunks = undefined
     this.#trees = [
       createForest(trees, water),
       createGrove(Math.round(trees / 16), water),
@@ -84,6 +87,16 @@ export class Land extends Group {
     this.#hasVillage = village
     for (const each of this.#trees) each.visible = trees
     this.#sky?.show({ houses: village, trees })
+  }
+
+  /** Height of the top of the trunk at a place: −∞ beside all of them, or where trees are not shown [m]. */
+  trunkAt(position: Readonly<Record<'x' | 'z', number>>): number {
+    if (!this.#hasTrees) return -Infinity
+    this.#trunks ??= trunkTops(
+      this.#trees.flatMap(({ trees }) => trees),
+      groundHeight
+    )
+    return this.#trunks(position)
   }
 
   /**

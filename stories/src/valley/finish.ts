@@ -1,4 +1,3 @@
-import { skyVelocity } from '@welkin/atmosphere'
 import { cloudVelocity, type CloudsNode } from '@welkin/clouds'
 import { UnsignedByteType } from 'three'
 import type { PerspectiveCamera, TextureDataType } from 'three'
@@ -8,7 +7,7 @@ import { fxaa } from 'three/addons/tsl/display/FXAANode.js'
 import { smaa } from 'three/addons/tsl/display/SMAANode.js'
 import { taau } from 'three/addons/tsl/display/TAAUNode.js'
 import { traa } from 'three/addons/tsl/display/TRAANode.js'
-import { builtinAOContext, mrt, output, rtt, vec4, velocity } from 'three/tsl'
+import { builtinAOContext, rtt, vec4 } from 'three/tsl'
 import type { Node, Renderer, RenderPipeline } from 'three/webgpu'
 import type { ValleyAir } from '../valleyAir'
 import { LastOcclusion } from './LastOcclusion'
@@ -60,11 +59,14 @@ export interface FinishedPicture extends Pick<
 > {
   /** Clouds in it, which move over the screen by themselves. */
   readonly clouds?: CloudsNode | undefined
-  /** True if all that is drawn stands still, and its material tells no velocities. */
-  readonly standsStill?: boolean
 }
 
-/** Post effects over the exposed picture, in the order of a camera: motion, lens, film. */
+/**
+ * Post effects over the exposed picture of things that stand still, in the order of a camera: motion, lens, film.
+ *
+ * The scene's pass writes no velocities: its target would keep a second texture when they are off again, for which three does not
+ * make its pipelines anew.
+ */
 export class PictureFinish {
   readonly #renderer: Renderer
   readonly #pipeline: RenderPipeline
@@ -86,6 +88,8 @@ export class PictureFinish {
     this.#pipeline = pipeline
     this.#camera = camera
     this.#air = air
+    // The air asks for no colour where nothing is drawn.
+    Object.assign(air.scenePass, { autoClearColor: false })
     // The table has the colours of the display.
     pipeline.outputColorTransform = false
   }
@@ -145,10 +149,7 @@ export class PictureFinish {
     const scale = antialiasing === 'taau' ? SMALL : 1
     scenePass.setResolutionScale(scale)
     this.#air.picture.scale = scale
-    scenePass.setMRT(null)
     const motion = antialiasing === 'traa' || scale < 1 ? this.#motion(scale) : null
-    // The air asks for no colour where nothing is drawn; velocities are asked for everywhere.
-    Object.assign(scenePass, { autoClearColor: motion !== null })
     this.#occlusion = effects.occlusion
       ? this.#keep(new LastOcclusion(this.#renderer, depth, this.#camera))
       : undefined
@@ -185,30 +186,21 @@ export class PictureFinish {
 
   /** Motion of ground, clouds and sky over the screen since the last frame. */
   #motion(scale: number): ReturnType<typeof rtt> {
-    const { scenePass, depth, standsStill } = this.#air
-    if (standsStill) {
-      const still = stillVelocity(depth, this.#camera)
-      return this.#texture(this.#withClouds(still), 'Motion', scale)
-    }
-    scenePass.setMRT(mrt({ output, velocity }))
-    const sky = skyVelocity(scenePass.getTextureNode('velocity'), depth, this.#camera)
-    return this.#texture(this.#withClouds(sky), 'Motion', scale)
+    return this.#texture(this.#velocities(), 'Motion', scale)
   }
 
-  /** Coarse motion for motion blur: of clouds and of what stands still, which costs the scene's pass nothing. */
+  /** Coarse motion for motion blur. */
   #motionOfCamera(): PictureNode {
-    const drawn = this.#drawn(
-      this.#withClouds(stillVelocity(this.#air.depth, this.#camera)),
-      'Motion'
-    )
+    const drawn = this.#drawn(this.#velocities(), 'Motion')
     drawn.scale = COARSE
     return drawn
   }
 
-  /** Velocities of a picture with those of its clouds. */
-  #withClouds(velocities: Node): Node {
-    const { clouds } = this.#air
-    return clouds ? this.#keep(cloudVelocity(velocities, clouds)) : velocities
+  /** Velocities of things and of the clouds before them. */
+  #velocities(): Node {
+    const { clouds, depth } = this.#air
+    const still = stillVelocity(depth, this.#camera)
+    return clouds ? this.#keep(cloudVelocity(still, clouds)) : still
   }
 
   /**

@@ -1,7 +1,7 @@
 import { lightning, type CloudsNode, type Lightning } from '@welkin/clouds'
 import type { Scene } from 'three'
 
-/** Lightning of the valley's storms, for a scene of which it was asked for: flashes may harm people. They are gentle. */
+/** Lightning of the valley's storms, dark until it is asked for: flashes may harm people. They are gentle. */
 export function valleyFlashes(scene: Scene, node: CloudsNode): Lightning {
   // #region lightning
   const storm = lightning(node) // before the first render

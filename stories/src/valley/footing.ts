@@ -1,3 +1,4 @@
+import type { Vector3 } from 'three'
 import type { ExplorerOptions } from '../moving/ExplorerOptions'
 import { topOf, type Obstacle } from '../moving/obstacles'
 import { groundHeight } from './ground'
@@ -29,17 +30,19 @@ export function villageTops(
 const REACH = 2400
 
 /**
- * The valley for those on foot: houses, and the lake with its bed.
+ * The valley for those on foot: houses, trees, and the lake with its bed.
  *
- * @param isShown - Answers which of these there are.
+ * @param isShown - Answers which of houses and lake there are.
+ * @param trunkAt - Height of the top of the trunk at a place, −∞ beside trees [m]. Default without trees.
  */
 export function valleyFooting(
-  isShown: () => { readonly village: boolean; readonly water: boolean }
+  isShown: () => { readonly village: boolean; readonly water: boolean },
+  trunkAt: (position: Vector3) => number = () => -Infinity
 ): Required<Pick<ExplorerOptions, 'footingAt' | 'waterAt'>> {
   const houses = villageTops(groundHeight)
   return {
     footingAt(position) {
-      const ground = groundHeight(position.x, position.z)
+      const ground = Math.max(groundHeight(position.x, position.z), trunkAt(position))
       return isShown().village ? Math.max(ground, houses(position)) : ground
     },
     waterAt({ x, z }) {

@@ -13,6 +13,9 @@ const LAYERED = 1.7
 /** Pixels over which rock is blurred: its bumps are differences between pixels, of which sharp ones would be pepper. */
 const BLURRED = 1.5
 
+/** Reads along the longer side of a pixel's footprint on rock. One: walls seen from aside are smeared down their slopes. */
+const PROBES = 2
+
 /** Widths over which crowns, and clumps of grass elsewhere, repeat [m]. */
 const CROWNED = 97
 const CLUMPS = 71
@@ -107,13 +110,22 @@ export function cracksIn(
     vec2(isEastern.select(at.z, at.x), at.y.mul(LAYERED)).toConst()
   const [place, across, along] = [flat(positionWorld), flat(right), flat(down)]
   let sum: Node<'vec2'> = vec2(0)
+  const [right2, down2] = [across, along].map(each => each.dot(each).toConst())
+  const longer = right2.greaterThan(down2).select(across, along).mul(BLURRED).toConst()
+  const width = right2
+    .min(down2)
+    .max(right2.max(down2).div(PROBES ** 2))
+    .sqrt()
+    .mul(BLURRED)
   for (const [period, deep] of CRACKS) {
-    const change = [across, along].map(each => each.mul(BLURRED / period))
-    const noise = texture(picture, place.div(period))
-      .grad(change[0], change[1])
-      .r.sub(0.5)
-      .mul(2)
-      .toConst()
+    const at = place.div(period).toConst()
+    const level = width
+      .mul(OCTAVES_SIDE / period)
+      .log2()
+      .toConst() as Node<'float'>
+    const probe = (part: number): Node<'float'> =>
+      texture(picture, at.add(longer.mul(part / period))).level(level).r
+    const noise = probe(-0.25).add(probe(0.25)).sub(1).toConst()
     // Cracks are sharp, what is between them is round.
     const cracked = noise.abs().mul(1.6).min(1).sub(0.4).toConst()
     sum = sum.add(vec2(cracked.mul(deep), cracked.add(noise.mul(0.5))))

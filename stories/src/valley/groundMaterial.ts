@@ -64,9 +64,6 @@ const WOODED = 14_000
 /** Brightness of crowns' tops over the noise that they follow, and of what is between them. */
 const CANOPY = [-0.4, 0.35] as const
 
-/** Anisotropy of rock. Less: walls seen from aside are smeared down their slopes. */
-const ROCK_ANISOTROPY = 4
-
 /** Share of woods from which ground has crowns, not clumps of grass, and distance within which these are drawn [m]. */
 const WOODLAND = 0.12
 const CLUMPED = 9000
@@ -97,16 +94,15 @@ export function groundMaterial(
   const place = positionWorld.xz
   const picture = createGroundNoise()
   // Each of its many scales is blurred far away: there are coarser ones. The finest are seen along the ground.
-  const [grazed, stone] = [picture.clone(), picture.clone()]
+  const grazed = picture.clone()
   picture.anisotropy = 1
   grazed.anisotropy = 2
-  stone.anisotropy = ROCK_ANISOTROPY
   // The coarsest of its five octaves has 8 cells a period. Seen from above: with heights in it, slopes that go with them have
   // streaks.
   const turnedBy = (period: number): Node<'vec2'> => turned(positionWorld, period)
   const noiseAt = (at: Node<'vec2'>): Node<'float'> => texture(picture, at).r.sub(0.5).mul(2)
   const patchMap = new PatchMap(coarseNoise(noiseAt))
-  for (const each of [picture, grazed, stone, patchMap]) {
+  for (const each of [picture, grazed, patchMap]) {
     material.addEventListener('dispose', () => each.dispose())
   }
   // A period that is a few pixels wide would show as a net.
@@ -159,7 +155,7 @@ export function groundMaterial(
     If(rocky.greaterThan(0), () => {
       // Where walls turn, noise parts one from the other.
       const isEastern = broadNormal.x.abs().sub(broadNormal.z.abs()).greaterThan(fine.mul(0.25))
-      found.assign(cracksIn(stone, isEastern, footprint).mul(rocky))
+      found.assign(cracksIn(picture, isEastern, footprint).mul(rocky))
     })
     return found
   })().toVar()

@@ -5,7 +5,7 @@ import type { AtmosphereView } from '../view/AtmosphereView'
 import { checkRange, checkSpectrum } from '../check'
 import { MASKING_RATIO, type PointRay, type SkyLayer, type SkyRay } from '../view/SkyLayer'
 import { scaleToLuminance } from '../parameters/photometry'
-import { vanRhijnFactors, thinLayerVanRhijnFactor } from './tsl/airglow'
+import { layerInPixel, thinLayerVanRhijnFactor, vanRhijnFactors } from './tsl/airglow'
 import type { Bool, Float, Vec4 } from '../tsl-types'
 import type { ViewUniforms } from '../view/ViewUniforms'
 import { number, vector4 } from '../uniforms'
@@ -162,10 +162,18 @@ export class Airglow implements SkyLayer {
   #vanRhijnFactors(
     view: ViewUniforms,
     cosView: Float,
-    distance: Float | null
+    distance: Float
   ): { down: Float; up: Float } {
     const { bottomRadius } = view.air.uniforms
     return vanRhijnFactors(this.#layer, view.height, cosView, bottomRadius, distance)
+  }
+
+  /** Van Rhijn factors of a pixel of the sky. */
+  #skyFactors({ view, cosView, pixel }: SkyRay): { down: Float; up: Float } {
+    const { air, height } = view
+    const { bottomRadius } = air.uniforms
+    const layer = layerInPixel(this.#layer, height, cosView, bottomRadius, pixel)
+    return vanRhijnFactors(layer, height, cosView, bottomRadius, null)
   }
 
   /** False by day, when the sky masks the layer. */
@@ -174,7 +182,8 @@ export class Airglow implements SkyLayer {
   }
 
   /** Light of the layer where the ray leaves it upwards, beyond the air below it. */
-  background({ view, cosView, airlight }: SkyRay, farther: Vec4): Vec4 {
+  background(ray: SkyRay, farther: Vec4): Vec4 {
+    const { view, cosView, airlight } = ray
     const light = farther.toVar()
     If(this.#isVisible(airlight), () => {
       const gain = float(0).toVar()
@@ -182,7 +191,7 @@ export class Airglow implements SkyLayer {
         const { bottomRadius } = view.air.uniforms
         gain.assign(thinLayerVanRhijnFactor(this.#layer, view.height, cosView, bottomRadius))
       }).Else(() => {
-        gain.assign(this.#vanRhijnFactors(view, cosView, null).up)
+        gain.assign(this.#skyFactors(ray).up)
       })
       light.addAssign(this.#radiance.mul(gain))
     })
@@ -190,10 +199,10 @@ export class Airglow implements SkyLayer {
   }
 
   /** Light of the layer in front of the air, where the ray enters it from above. */
-  glow({ view, cosView, airlight }: SkyRay, without: Vec4): Vec4 {
+  glow(ray: SkyRay, without: Vec4): Vec4 {
     const light = without.toVar()
-    If(this.#isClose.greaterThan(0).and(this.#isVisible(airlight)), () => {
-      light.addAssign(this.#radiance.mul(this.#vanRhijnFactors(view, cosView, null).down))
+    If(this.#isClose.greaterThan(0).and(this.#isVisible(ray.airlight)), () => {
+      light.addAssign(this.#radiance.mul(this.#skyFactors(ray).down))
     })
     return light
   }

@@ -9,6 +9,31 @@ export interface AirglowLayerNodes {
   width: Float
 }
 
+/** Standard deviation of what a pixel sees at once, over its diagonal: half of its side. */
+const PIXEL_SIGMA = 0.35
+
+/**
+ * Layer as wide as a pixel sees it: from far away its limb is thinner than a pixel, and would be a line of dots.
+ *
+ * @param altitude - Altitude of the camera [m].
+ * @param cosView - μ.
+ * @param bottomRadius - Planet's centre to the ground [m].
+ * @param pixel - Angle of the pixel's diagonal [rad].
+ */
+export function layerInPixel(
+  layer: AirglowLayerNodes,
+  altitude: Float,
+  cosView: Float,
+  bottomRadius: Float,
+  pixel: Float
+): AirglowLayerNodes {
+  // At the ray's lowest point, from where it goes along the layer.
+  const distance = bottomRadius.add(altitude).mul(cosView).min(0)
+  const blur = distance.mul(pixel).mul(PIXEL_SIGMA).toConst()
+  const width = layer.width.mul(layer.width).add(blur.mul(blur)).sqrt().toConst()
+  return { altitude: layer.altitude, width }
+}
+
 /**
  * Light of a Gaussian layer along half of a line whose lowest point is q standard deviations below the
  * layer's middle: F(q) = ∫₀^∞ exp(−(u² − q)²/2) du, within 0.7 %.
