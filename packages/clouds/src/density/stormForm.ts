@@ -32,6 +32,11 @@ export const stormShape = {
    */
   aside: 2.25,
   mostAside: 0.5,
+  /**
+   * Lead of the nearest storm over the next from which turbulence bends it as other clouds, in bends of unit deviation [–]. Much less: folds and walls
+   * midway between two storms; greater: storms that meet have straight seams (*Storm*).
+   */
+  steady: 10,
   /** Factors of the tower's radius at its base and at the top, under a full anvil [–]. */
   widening: [0.9, 1.15],
   /** Factors of a tower without an anvil [–]: a heap. As under an anvil: a block with upright sides (*Shower*). */
