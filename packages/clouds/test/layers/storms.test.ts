@@ -1,9 +1,11 @@
 import { Vector3 } from 'three'
 import { describe, expect, it } from 'vitest'
 import { cloudPreset } from '../../src'
+import { billowForm } from '../../src/density/formConstants'
 import { stormPlaces } from '../../src/density/stormForm'
+import { layerPeriods } from '../../src/layers/layerUniforms'
 import { isStorm, stormBody, stormCell, stormRadius } from '../../src/layers/storms'
-import { hashBits } from '../twins/noise'
+import { hashBits, type Vec3Array } from '../twins/noise'
 import { stormAround, stormAside } from '../twins/storm'
 
 const { parameters: storm } = cloudPreset('cumulonimbus').at(0)
@@ -122,6 +124,36 @@ describe('storms', () => {
     }
     // Places aside of the surface have greater slopes: the cube of their height is in the distance.
     expect(steepest).toBeLessThan(3)
+  })
+
+  it('have no walls midway between two, where turbulence bends them by as much as it does', () => {
+    const radius = stormRadius(storm, 0, 0.7, 2)
+    const bend = 3 * storm.turbulence * billowForm.bend * layerPeriods(storm).shape
+    const step = 20
+    const periodsOf = (metres: number): number => metres / stormCell(storm) / stormPlaces.cells
+    let steepest = 0
+    for (const [i, { place, up }] of places.entries()) {
+      const level = (seed: number): Vector3 =>
+        new Vector3(...[0, 1, 2].map(axis => random(9 * i + 3 * seed + axis) - 0.5))
+          .projectOnPlane(up)
+          .normalize()
+      const [along, aside, downwind] = [0, 1, 2].map(level)
+      const moved = (from: Vec3Array, direction: Vector3, metres: number): Vec3Array => {
+        const [x, y, z] = direction.clone().multiplyScalar(periodsOf(metres))
+        return [from[0] + x, from[1] + y, from[2] + z]
+      }
+      const [before, after] = [place, moved(place, along, step)].map(still => {
+        const found = stormAround(storm, moved(still, aside, bend), up, downwind, radius, still)
+        return [found.distance, found.towerDistance]
+      })
+      before.forEach((distance, k) => {
+        // Neither anvils nor towers reach farther.
+        if (Math.min(distance, after[k]) > [1.1, 0.6][k] * radius) return
+        steepest = Math.max(steepest, Math.abs(after[k] - distance) / step)
+      })
+    }
+    // Else nearly 100: a step of twice the bend.
+    expect(steepest).toBeLessThan(2)
   })
 
   it('have a distance outside of their bodies within which there is none of them', () => {

@@ -1,4 +1,5 @@
 import { MathUtils, Vector3 } from 'three'
+import { billowForm } from '../../src/density/formConstants'
 import { stormBillows, stormFibres, stormPlaces, stormShape } from '../../src/density/stormForm'
 import type { CloudLayerParameters } from '../../src/layers/CloudLayer'
 import {
@@ -38,6 +39,8 @@ interface StormGaps {
   readonly tower: Vector3
   /** Distance from the next nearest anvil of those that are searched, less that from the nearest. */
   readonly lead: number
+  /** The same of towers. */
+  readonly towerLead: number
 }
 
 /** A storm in a cell around a place. */
@@ -81,8 +84,16 @@ export function stormGaps(place: Vec3Array, up: Vector3, downwind: Vector3): Sto
   const [anvil] = byDistance(storms.map(({ gap }) => gap))
   const [tower] = byDistance(storms.map(({ gap }) => gap.clone().sub(downwind)))
   const searched = storms.filter(({ isSearched }) => isSearched).map(({ gap }) => gap)
-  const [first, second] = byDistance(searched).map(gap => axisDistance(gap, up))
-  return { anvil, tower, lead: second - first }
+  const leadOf = (gaps: Vector3[]): number => {
+    const [first, second] = byDistance(gaps).map(gap => axisDistance(gap, up))
+    return second - first
+  }
+  return {
+    anvil,
+    tower,
+    lead: leadOf(searched),
+    towerLead: leadOf(searched.map(gap => gap.clone().sub(downwind)))
+  }
 }
 
 /** A storm around a place: see `StormAround` of density/tsl/storm.ts. */
@@ -113,13 +124,21 @@ export function stormAround(
   still = place
 ): StormAround {
   const aside = downwind.clone().setLength(stormAside(layer, radius) / stormCell(layer))
-  const turned = still.map((value, axis) => (value - place[axis]) * stormPlaces.cells)
   const found = stormGaps(still, up, aside)
-  const [anvil, tower] = [found.anvil, found.tower].map(gap => gap.add(new Vector3(...turned)))
-  const cells = axisDistance(anvil, up)
+  const bend = new Vector3(...place).sub(new Vector3(...still)).multiplyScalar(stormPlaces.cells)
+  const unit = layer.turbulence * billowForm.bend * layerPeriods(layer).shape
+  const bent = (gap: Vector3, lead: number): Vector3 => {
+    const share = (lead * stormCell(layer)) / Math.max(unit * stormShape.steady, 1)
+    return gap.clone().addScaledVector(bend, -MathUtils.clamp(share, 0, 1))
+  }
+  const anvil = bent(found.anvil, found.lead)
+  const tower = bent(found.tower, found.towerLead)
+  const { merge } = stormPlaces
+  const merged = (merge / 4) * Math.max(1 - found.lead / merge, 0) ** 2
+  const cells = Math.max(axisDistance(anvil, up) - merged, 0)
   const { scale, power } = stormPlaces
   const towerDistance = axisDistance(tower, up) * stormCell(layer)
-  const axis = new Vector3(...place).multiplyScalar(stormPlaces.cells).add(anvil)
+  const axis = new Vector3(...still).multiplyScalar(stormPlaces.cells).add(found.anvil)
   const outward = aside.clone().sub(anvil).projectOnPlane(up)
   const fibrePlace = outward
     .clone()

@@ -2,6 +2,7 @@ import { Fn, If, bool, float, mix, smoothstep } from 'three/tsl'
 import { select } from '../../select'
 import { layout, type Bool, type Float, type Vec2, type Vec3 } from '../../tsl-types'
 import { stormFibres, stormPlaces, stormShape } from '../stormForm'
+import { inLattice } from './inLattice'
 import type { LayerNodes } from './layer'
 import { fibrePlace } from './stormFibres'
 import {
@@ -75,9 +76,9 @@ export function stormNearby(
   const lean = layer.shearAxis.cross(up).toConst() as Vec3
   const aside = asidePerShear(layer, lean.length(), radius).mul(stormPlaces.cells)
   const downwind = layer.displacementInFields(lean).mul(aside).toConst() as Vec3
-  const { anvil, tower, lead } = stormGaps(place, zenith, downwind)
+  const { anvil, tower, ...leads } = stormGaps(place, zenith, downwind)
   const at = place.mul(stormPlaces.cells).toConst() as Vec3
-  return { anvil: at.add(anvil), tower: at.add(tower), lead, zenith, downwind, radius }
+  return { anvil: at.add(anvil), tower: at.add(tower), ...leads, zenith, downwind, radius }
 }
 
 /**
@@ -85,20 +86,33 @@ export function stormNearby(
  * would end in a wall where another's anvil is nearer than its own.
  *
  * @param subpoint - As of `cloudWeather`.
- * @param bent - Displacement of the look-up along two axes of the lattice [m].
+ * @param shift - `shift` of `WeatherBackground` [m].
+ * @param bend - Displacement by turbulence, along the same two axes of the lattice [m].
  * @param nearby - The nearest storms: `stormNearby`.
  */
 export function stormAround(
   layer: LayerNodes,
   subpoint: Vec3,
-  bent: Vec2,
-  { anvil, tower, lead, zenith, downwind, radius }: StormNearby
+  shift: Vec2,
+  bend: Vec2,
+  { anvil, tower, lead, towerLead, zenith, downwind, radius }: StormNearby
 ): StormAround {
-  const at = placeOf(layer, subpoint, bent).mul(stormPlaces.cells).toConst() as Vec3
-  const toAnvil = anvil.sub(at).toConst() as Vec3
-  const cells = squareFrom(toAnvil, zenith).sqrt().toConst() as Float
-  const toTower = tower.sub(at).sub(downwind).toConst() as Vec3
+  const at = placeOf(layer, subpoint, shift).mul(stormPlaces.cells).toConst() as Vec3
   const length = cellLength(layer)
+  const bent = inLattice(bend).div(length).toConst() as Vec3
+  // Midway between two storms there is none: it would be nearer to the one by it, and farther from the other.
+  const perLead = length.div(layer.bend.mul(stormShape.steady).max(1)).toConst() as Float
+  const gapTo = (axis: Vec3, ahead: Float): Vec3 =>
+    axis
+      .sub(at)
+      .sub(bent.mul(ahead.mul(perLead).clamp()))
+      .toConst()
+  const toAnvil = gapTo(anvil, lead)
+  // Smooth minimum of the distances to the nearest and the next: anvils that meet grow together.
+  const meets = lead.div(stormPlaces.merge).oneMinus().max(0).toConst() as Float
+  const merged = meets.mul(meets).mul(stormPlaces.merge / 4)
+  const cells = squareFrom(toAnvil, zenith).sqrt().sub(merged).max(0).toConst() as Float
+  const toTower = gapTo(tower, towerLead).sub(downwind).toConst() as Vec3
   return {
     distance: cells.mul(length).toConst(),
     towerDistance: squareFrom(toTower, zenith).sqrt().mul(length).toConst(),

@@ -34,10 +34,12 @@ export interface StormGaps {
   readonly tower: Vec3
   /** Distance from the axis of the next nearest anvil, less that from the nearest. */
   readonly lead: Float
+  /** The same of towers. */
+  readonly towerLead: Float
 }
 
 /**
- * Displacements to the nearest storms, as columns of a matrix, and the lead: `StormGaps`. Twin: `stormGaps` in
+ * Displacements to the nearest storms, as columns of a matrix, and both leads: `StormGaps`. Twin: `stormGaps` in
  * test/twins/storm.ts
  *
  * @param p - Place in the lattice, in its periods.
@@ -53,9 +55,9 @@ const gapsAround = /*#__PURE__*/ Fn(
     const side = step(vec3(0.5), part).mul(2).sub(1).toConst()
     const stride = wrapped(base.add(side), count).sub(origin).toConst()
     const anvil = vec4(0, 0, 0, 99).toVar()
-    /** Square of the distance from the next nearest one. */
-    const next = float(99).toVar()
     const tower = vec4(0, 0, 0, 99).toVar()
+    /** Squares of the distances from the next nearest ones. */
+    const [next, nextTower] = [0, 1].map(() => float(99).toVar() as Float)
     loop('stormCell', 8, corner => {
       const digits = digitsOf(corner, 2).toConst()
       const place = hashCell(index.add(stride.mul(digits)))
@@ -68,10 +70,14 @@ const gapsAround = /*#__PURE__*/ Fn(
       anvil.assign(select(isNearer, vec4(gap, square), anvil))
       // Less what is the same for all.
       const fromTower = square.sub(downwind.dot(gap).mul(2)).toConst()
-      tower.assign(select(fromTower.lessThan(tower.w), vec4(gap, fromTower), tower))
+      const isNearerTower = fromTower.lessThan(tower.w).toConst()
+      nextTower.assign(select(isNearerTower, tower.w, nextTower.min(fromTower)))
+      tower.assign(select(isNearerTower, vec4(gap, fromTower), tower))
     })
-    const lead = next.sqrt().sub(anvil.w.sqrt())
-    return mat3(anvil.xyz, tower.xyz, vec3(lead, 0, 0))
+    const same = downwind.dot(downwind).toConst()
+    const lead = (nearest: Float, second: Float): Float => second.sqrt().sub(nearest.sqrt())
+    const ofTowers = lead(tower.w.add(same).max(0), nextTower.add(same).max(0))
+    return mat3(anvil.xyz, tower.xyz, vec3(lead(anvil.w, next), ofTowers, 0))
   },
   layout('welkinStormGaps', 'mat3', { p: 'vec3', up: 'vec3', downwind: 'vec3' })
 ) as unknown as (p: Vec3, up: Vec3, downwind: Vec3) => Mat3
@@ -84,15 +90,15 @@ interface Columns {
 /** Displacements to the nearest storms: see `gapsAround`. */
 export function stormGaps(p: Vec3, up: Vec3, downwind: Vec3): StormGaps {
   const gaps = gapsAround(p, up, downwind).toConst() as unknown as Columns
-  const [anvil, tower, { x: lead }] = [0, 1, 2].map(column => gaps.element(int(column)))
-  return { anvil, tower, lead: lead.toConst() }
+  const [anvil, tower, leads] = [0, 1, 2].map(column => gaps.element(int(column)))
+  return { anvil, tower, lead: leads.x.toConst(), towerLead: leads.y.toConst() }
 }
 
 /** Place in the lattice of storms, in its periods, of a displaced look-up. */
-export const placeOf = (layer: LayerNodes, subpoint: Vec3, bent: Vec2): Vec3 =>
+export const placeOf = (layer: LayerNodes, subpoint: Vec3, shift: Vec2): Vec3 =>
   layer
     .fieldLattice(subpoint)
-    .add(inLattice(bent).mul(layer.perWeatherPeriod.div(noisePeriods.fields)))
+    .add(inLattice(shift).mul(layer.perWeatherPeriod.div(noisePeriods.fields)))
     .toConst()
 
 /** Form of all storms around a place: it changes over many kilometres. */
@@ -119,6 +125,7 @@ export const keptStorm = (): KeptStorm => ({
   anvil: vec3(0).toVar(),
   tower: vec3(0).toVar(),
   lead: float(0).toVar(),
+  towerLead: float(0).toVar(),
   zenith: vec3(0).toVar(),
   downwind: vec3(0).toVar(),
   radius: float(0).toVar()

@@ -102,7 +102,7 @@ export function cloudWeather(
     layer,
     () => {
       const found = nearby ?? stormsAt(field, layer, background, subpoint)
-      const storm = stormAround(layer, subpoint, bent, found)
+      const storm = stormAround(layer, subpoint, background.shift, bend, found)
       radius.assign(found.radius)
       stormDistance.assign(storm.distance)
       towerDistance.assign(storm.towerDistance)
