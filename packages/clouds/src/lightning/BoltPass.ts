@@ -1,6 +1,6 @@
 import { aerialPerspectiveTo, tableTarget, type AtmosphereView } from '@welkin/atmosphere'
-import type { Vector3 } from 'three'
 import {
+  Box2,
   BufferGeometry,
   CustomBlending,
   DoubleSide,
@@ -8,18 +8,23 @@ import {
   MaxEquation,
   Matrix3,
   Mesh,
+  NoBlending,
   OneFactor,
+  PlaneGeometry,
   RGFormat,
-  Scene
+  Scene,
+  Vector2,
+  Vector3,
+  Vector4
 } from 'three'
 import { Fn, Discard, If, attribute, screenUV, texture, varying, vec2, vec3, vec4 } from 'three/tsl'
 import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
 import { select } from '../select'
 import type { CloudsNode } from '../march/CloudsNode'
 import { isDrawnBefore } from '../march/tsl/viewRay'
-import type { Float, LevelTexture, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
-import { matrix3, matrix4, number, vector3 } from '../uniforms'
-import { STORED_POWER, type PlacedChannel } from './channel'
+import type { Bool, Float, LevelTexture, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
+import { matrix3, matrix4, number, vector3, vector4 } from '../uniforms'
+import { STORED_POWER, type PlacedChannel, type Point } from './channel'
 
 /** Deviation of a channel's width in the picture [pixels]. Smaller: steps at its edges. */
 const WIDTH = 0.8
@@ -34,6 +39,11 @@ const HIDING = 0.005
 const LEAST_PASSING = 0.01
 
 const _toView = new Matrix3()
+const _point = new Vector3()
+const _clip = new Vector4()
+const _corner = new Vector2()
+const _box = new Box2()
+const _picture = new Box2(new Vector2(0, 0), new Vector2(1, 1))
 
 /** Quads of all pieces: which corner a vertex is, for its position, and where its piece begins and ends. */
 function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
@@ -65,18 +75,24 @@ function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
 /** A channel of lightning as thin bright lines, hidden by what was drawn and dimmed by clouds and air before it. */
 export class BoltPass {
   readonly #clouds: CloudsNode
-  /** Red and blue alone: to clear it costs more than to draw the few pixels of a channel. */
+  /** Red and blue alone; dark but for the few pixels of a channel, of which the next frame clears the box: to clear all of it costs more than the channel. */
   readonly #target = tableTarget('Welkin.LightningChannel', 1, 1)
   readonly #texture: LevelTexture<Vec2>
   readonly #scene = new Scene()
   readonly #material: NodeMaterial
   readonly #mesh: Mesh
+  readonly #eraser: Mesh<PlaneGeometry, NodeMaterial>
+  /** Both ends of all pieces, in the channel's frame [m]. */
+  #ends: readonly Point[] = []
   /** The channel's frame to view space [world units/m], and its place there. */
   readonly #toView = matrix3()
   readonly #placeView = vector3()
   /** The channel's place in its own frame, from the camera [m]. */
   readonly #place = vector3()
   readonly #projection = matrix4()
+  /** Box around the channel in the picture, and the last one drawn: its middle and half its size, y down. */
+  readonly #box = vector4()
+  readonly #lastBox = vector4()
   /** Luminous intensity of a metre of the stem, and that of branches, for `STORED_POWER` [cd/m]. */
   readonly #stemLight = number()
   readonly #branchLight = number()
@@ -87,14 +103,37 @@ export class BoltPass {
     this.#texture = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
     this.#material = this.#makeMaterial()
     this.#mesh = new Mesh(new BufferGeometry(), this.#material)
-    this.#mesh.frustumCulled = false
-    this.#scene.add(this.#mesh)
+    this.#eraser = new Mesh(new PlaneGeometry(2, 2), this.#makeEraser())
+    this.#eraser.renderOrder = -1
+    for (const mesh of [this.#mesh, this.#eraser]) {
+      mesh.frustumCulled = false
+      this.#scene.add(mesh)
+    }
   }
 
   /** Takes a channel's geometry. */
   set channel(channel: PlacedChannel) {
     this.#mesh.geometry.dispose()
     this.#mesh.geometry = quadsOf(channel)
+    this.#ends = channel.pieces.flatMap(({ from, to }) => [from, to])
+  }
+
+  /** Black, in the last box. */
+  #makeEraser(): NodeMaterial {
+    const material = new NodeMaterial()
+    Object.assign(material, {
+      name: 'Welkin.LightningErased',
+      blending: NoBlending,
+      depthTest: false,
+      depthWrite: false,
+      transparent: true,
+      side: DoubleSide
+    })
+    const corner = attribute('position', 'vec3') as unknown as Vec3
+    const at = corner.xy.mul(this.#lastBox.zw).add(this.#lastBox.xy)
+    material.vertexNode = vec4(at.mul(vec2(2, -2)).add(vec2(-1, 1)), 0.5, 1)
+    material.fragmentNode = vec4(0, 0, 0, 1)
+    return material
   }
 
   #makeMaterial(): NodeMaterial {
@@ -192,6 +231,13 @@ export class BoltPass {
     return material
   }
 
+  /** True in the box around the channel. To be called inside of a shader function. @param at - In the picture, y down. */
+  isNear(at: Vec2): Bool {
+    const box = this.#box as unknown as Vec4
+    const beyond = at.sub(box.xy).abs().sub(box.zw).toConst() as Vec2
+    return beyond.x.max(beyond.y).lessThan(0)
+  }
+
   /** Red and blue of the channel, for `STORED_POWER`. To be called inside of a shader function. @param at - In the picture, y down. */
   sample(at: Vec2): Vec2 {
     return this.#texture.sample(at).level(0).xy
@@ -222,13 +268,43 @@ export class BoltPass {
     frame.projectionOf(this.#clouds.camera, this.#projection.value)
     this.#stemLight.value = STORED_POWER / (4 * Math.PI * brightLength)
     this.#branchLight.value = this.#stemLight.value * branches
+    const { x: width, y: height } = frame.size.value
+    if (this.#target.width !== width || this.#target.height !== height) {
+      this.#target.setSize(width, height)
+      this.#box.value.set(0.5, 0.5, 0.5, 0.5)
+    }
+    this.#lastBox.value.copy(this.#box.value)
+    this.#findBox()
     const state = RendererUtils.resetRendererState(renderer, {} as never)
-    this.#target.setSize(frame.size.value.x, frame.size.value.y)
     renderer.setRenderTarget(this.#target)
-    renderer.setClearColor(0x000000, 0)
-    renderer.autoClear = true
+    renderer.autoClear = false
     renderer.render(this.#scene, this.#clouds.camera)
     RendererUtils.restoreRendererState(renderer, state)
+  }
+
+  /** Sets the box around the channel, with the width of its lines. */
+  #findBox(): void {
+    const { size } = this.#clouds.passes.viewRays.frame
+    const margin = HALF_WIDTH + BEYOND + 1
+    _box.makeEmpty()
+    for (const end of this.#ends) {
+      _point
+        .set(...end)
+        .applyMatrix3(this.#toView.value)
+        .add(this.#placeView.value)
+      const { x, y, w } = _clip.set(..._point.toArray(), 1).applyMatrix4(this.#projection.value)
+      // Behind the camera: what is before it may be anywhere.
+      if (w <= 0) _box.expandByPoint(_corner.set(-9, -9)).expandByPoint(_corner.set(9, 9))
+      else _box.expandByPoint(_corner.set(x / w, -y / w))
+    }
+    _box.min.addScalar(1).multiplyScalar(0.5)
+    _box.max.addScalar(1).multiplyScalar(0.5)
+    _box.expandByVector(_corner.set(margin, margin).divide(size.value))
+    _box.intersect(_picture)
+    const { min, max } = _box
+    this.#box.value.set(min.x + max.x, min.y + max.y, max.x - min.x, max.y - min.y)
+    this.#box.value.multiplyScalar(0.5)
+    if (_box.isEmpty()) this.#box.value.set(0, 0, 0, 0)
   }
 
   /** Frees its render target and geometry. */
@@ -236,5 +312,7 @@ export class BoltPass {
     this.#target.dispose()
     this.#mesh.geometry.dispose()
     this.#material.dispose()
+    this.#eraser.geometry.dispose()
+    this.#eraser.material.dispose()
   }
 }

@@ -75,9 +75,11 @@ export class StormDensity {
   readonly #target = boxTarget('Density')
   readonly #openTarget = tableTarget('Welkin.LightningWaysOut', 1, 1)
   readonly #lightTarget = boxTarget('Light')
+  readonly #smoothTarget = boxTarget('Out')
   readonly #density = nodeOf(this.#target)
   readonly #open = nodeOf(this.#openTarget)
   readonly #light = nodeOf(this.#lightTarget)
+  readonly #smooth = nodeOf(this.#smoothTarget)
   readonly #passes: readonly (readonly [FragmentPass, RenderTarget])[]
   /** Place of the flash on the ground, from the camera, and east, north and up there, in the mapped space. */
   readonly #place = vector3()
@@ -91,7 +93,8 @@ export class StormDensity {
     this.#passes = [
       [new FragmentPass('Welkin.LightningDensity', this.#draw()), this.#target],
       [new FragmentPass('Welkin.LightningWaysOut', this.#waysOut()), this.#openTarget],
-      [new FragmentPass('Welkin.LightningLight', this.#lit()), this.#lightTarget]
+      [new FragmentPass('Welkin.LightningLight', this.#lit()), this.#lightTarget],
+      [new FragmentPass('Welkin.LightningOut', this.#smoothed()), this.#smoothTarget]
     ]
   }
 
@@ -201,6 +204,19 @@ export class StormDensity {
     })()
   }
 
+  /** Light that comes out of a cell, and 1 if it comes from out of another cloud, else 0. */
+  #smoothed(): Vec4 {
+    return Fn(() => {
+      const cell = this.#cell()
+      // Tents at the corners of a tetrahedron: smooth, as by a B-spline; one alone shows its cells.
+      const light = CORNERS.map(corner => this.#read(this.#light, cell, corner))
+        .reduce((sum, each) => sum.add(each))
+        .div(CORNERS.length)
+        .toConst() as Vec3
+      return vec4(light.x.mul(passed(light.y)).min(THINNEST), light.z, 0, 1)
+    })()
+  }
+
   /** Value of a box at a place in the flash's frame, shifted by parts of a cell; out of it, that at its edge. */
   #read(
     box: LevelTexture<Vec2>,
@@ -250,12 +266,7 @@ export class StormDensity {
     const shifted = offset.sub(this.#place).toConst() as Vec3
     const [east, north, up] = this.#axes.map(axis => shifted.dot(axis))
     const place = vec3(east, north, up).toConst() as Vec3
-    // Tents at the corners of a tetrahedron: smooth, as by a B-spline; one alone shows its cells.
-    const light = CORNERS.map(corner => this.#read(this.#light, place, corner))
-      .reduce((sum, each) => sum.add(each))
-      .div(CORNERS.length)
-      .toConst() as Vec3
-    return vec2(light.x.mul(passed(light.y)).min(THINNEST), light.z)
+    return this.#read(this.#smooth, place).xy
   }
 
   /** Follows the camera. @param offset - The flash's place from the camera, in the mapped space [m]. */
