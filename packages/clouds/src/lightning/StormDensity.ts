@@ -1,6 +1,6 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import type { RenderTarget, Vector3 } from 'three'
-import { Fn, If, float, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, If, float, mix, smoothstep, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { select } from '../select'
 import type { CloudField } from '../density/CloudField'
@@ -45,6 +45,9 @@ export const OPEN = 4
 const THINNEST = 3
 /** Scaled extinction below which there is no cloud [1/m]. */
 const CLEAR = 3e-4
+
+/** Clear ways between parts of one cloud, and between clouds [m]. Smaller: bright islands with outlines on towers (*Storm at night*). */
+const GAP = [150, 850] as const
 
 /** Corners of a tetrahedron half a cell about a place [cells]. */
 const CORNERS = [
@@ -173,8 +176,8 @@ export class StormDensity {
   }
 
   /**
-   * Light that got out of the clouds before that of a cell, or would get out of the flash's own ball, over what an even ball would send there; depth of its
-   * own cloud; and 1 if that is another than the flash's.
+   * Light that comes out at a cell, over what an even ball would send there, and from 0 to 1 how much its cloud is another than the flash's: clefts within a
+   * cloud part nothing.
    */
   #lit(): Vec4 {
     return Fn(() => {
@@ -184,27 +187,33 @@ export class StormDensity {
         .mul(6 / SAMPLES)
         .toConst() as Float
       const open = this.#open.sample(vec2(0.5)).level(0).x.div(OPEN).toConst()
-      /** Depth of the present cloud; light that got out of those before it, if there are any. */
+      /** Depth of all clouds and of the present one; light that got out of those before it; way in clear air. */
+      const whole = float(0).toVar() as Variable<Float>
       const depth = float(0).toVar() as Variable<Float>
-      const out = float(0).toVar() as Variable<Float>
-      const before = (): Float => select(out.greaterThan(0), out, open)
+      const out = open.toVar() as Variable<Float>
+      const gap = float(0).toVar() as Variable<Float>
       loop('lightStep', SAMPLES, index => {
         // Finest at both ends: what is before the place makes its form.
         const even = float(index).add(0.5).div(SAMPLES).toConst() as Float
         const part = even.mul(even).mul(even.mul(-2).add(3))
         const density = this.#densityAt(this.#source.add(way.mul(part)).toConst()).toConst()
+        const step = even.mul(even.oneMinus()).mul(length).toConst()
         If(density.lessThan(CLEAR), () => {
-          out.assign(before().mul(passed(depth)).min(THINNEST))
+          out.assign(out.mul(passed(depth)).min(THINNEST))
           depth.assign(0)
+          gap.addAssign(step)
         }).Else(() => {
-          depth.addAssign(density.mul(even).mul(even.oneMinus()).mul(length))
+          depth.addAssign(density.mul(step))
+          whole.addAssign(density.mul(step))
         })
       })
-      return vec4(before(), depth, select(out.greaterThan(0), 1, 0), 1)
+      const other = smoothstep(...GAP, gap).toConst() as Float
+      const light = mix(open.mul(passed(whole)), out.mul(passed(depth)), other)
+      return vec4(light.min(THINNEST), other, 0, 1)
     })()
   }
 
-  /** Light that comes out of a cell, and 1 if it comes from out of another cloud, else 0. */
+  /** `#lit`, with that of the cells around. */
   #smoothed(): Vec4 {
     return Fn(() => {
       const cell = this.#cell()
@@ -212,8 +221,7 @@ export class StormDensity {
       const light = CORNERS.map(corner => this.#read(this.#light, cell, corner))
         .reduce((sum, each) => sum.add(each))
         .div(CORNERS.length)
-        .toConst() as Vec3
-      return vec4(light.x.mul(passed(light.y)).min(THINNEST), light.z, 0, 1)
+      return vec4(light, 1)
     })()
   }
 
@@ -257,7 +265,7 @@ export class StormDensity {
   }
 
   /**
-   * Light that comes out at a place, over what an even ball would send there, and 1 if it comes from out of another cloud, else 0. To be called inside of
+   * Light that comes out at a place, over what an even ball would send there, and from 0 to 1 how much it comes out of another cloud. To be called inside of
    * a shader function.
    *
    * @param offset - Displacement from the camera, in the mapped space [m].
