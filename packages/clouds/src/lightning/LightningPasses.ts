@@ -185,7 +185,7 @@ export class LightningPasses {
     const taps = TAPS.map(tap => {
       const texel = nearest.add(vec2(...tap)).toConst() as Vec2
       return {
-        shift: texel.sub(place).toConst() as Vec2,
+        shift: texel.sub(place).toConst(),
         seen: this.#seenAt(texel.add(0.5).div(marchedSize).toConst())
       }
     })
@@ -210,9 +210,9 @@ export class LightningPasses {
       const rise = seen.y.sub(reference).toConst() as Float
       const apart = rise.mul(perLike).toConst() as Float
       const weight = seen.x.div(apart.mul(apart).add(1)).toConst() as Float
-      weights = weights.add(vec3(1, shift).mul(weight)).toConst() as Vec3
-      squares = squares.add(shift.mul(shift).mul(weight)).toConst() as Vec2
-      rises = rises.add(vec3(1, shift).mul(rise.mul(weight))).toConst() as Vec3
+      weights = weights.add(vec3(1, shift).mul(weight)).toConst()
+      squares = squares.add(shift.mul(shift).mul(weight)).toConst()
+      rises = rises.add(vec3(1, shift).mul(rise.mul(weight))).toConst()
     }
     const perWeight = weights.x.max(1e-9).reciprocal().toConst() as Float
     const middle = weights.yz.mul(perWeight).toConst() as Vec2
@@ -237,7 +237,7 @@ export class LightningPasses {
     }
     const known = width.div(width.add(blurred)).toConst() as Float
     return {
-      opacity: sums.x.div(TAPS.length).toConst() as Float,
+      opacity: sums.x.div(TAPS.length).toConst(),
       distance,
       normal: normal.normalize().toConst(),
       known

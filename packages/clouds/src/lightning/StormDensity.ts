@@ -75,14 +75,13 @@ const nodeOf = (target: RenderTarget): LevelTexture<Vec2> =>
  * of depth τ passes 1/(1 + τ/`OPEN`), as a slab does.
  */
 export class StormDensity {
-  readonly #target = boxTarget('Density')
+  /** Density of the cells, until light has been found from it; then that which comes out of them. */
+  readonly #target = boxTarget('Box')
   readonly #openTarget = tableTarget('Welkin.LightningWaysOut', 1, 1)
   readonly #lightTarget = boxTarget('Light')
-  readonly #smoothTarget = boxTarget('Out')
-  readonly #density = nodeOf(this.#target)
+  readonly #box = nodeOf(this.#target)
   readonly #open = nodeOf(this.#openTarget)
   readonly #light = nodeOf(this.#lightTarget)
-  readonly #smooth = nodeOf(this.#smoothTarget)
   readonly #passes: readonly (readonly [FragmentPass, RenderTarget])[]
   /** Place of the flash on the ground, from the camera, and east, north and up there, in the mapped space. */
   readonly #place = vector3()
@@ -97,7 +96,7 @@ export class StormDensity {
       [new FragmentPass('Welkin.LightningDensity', this.#draw()), this.#target],
       [new FragmentPass('Welkin.LightningWaysOut', this.#waysOut()), this.#openTarget],
       [new FragmentPass('Welkin.LightningLight', this.#lit()), this.#lightTarget],
-      [new FragmentPass('Welkin.LightningOut', this.#smoothed()), this.#smoothTarget]
+      [new FragmentPass('Welkin.LightningOut', this.#smoothed()), this.#target]
     ]
   }
 
@@ -261,7 +260,7 @@ export class StormDensity {
   /** Scaled extinction at a place in the flash's frame [1/m]. */
   #densityAt(place: Vec3): Float {
     const up = this.#heightOf(place)
-    return select(up.clamp(0, 1).equal(up), this.#read(this.#density, place).x.div(1000), 0)
+    return select(up.clamp(0, 1).equal(up), this.#read(this.#box, place).x.div(1000), 0)
   }
 
   /**
@@ -274,7 +273,7 @@ export class StormDensity {
     const shifted = offset.sub(this.#place).toConst() as Vec3
     const [east, north, up] = this.#axes.map(axis => shifted.dot(axis))
     const place = vec3(east, north, up).toConst() as Vec3
-    return this.#read(this.#smooth, place).xy
+    return this.#read(this.#box, place).xy
   }
 
   /** Follows the camera. @param offset - The flash's place from the camera, in the mapped space [m]. */
@@ -302,6 +301,6 @@ export class StormDensity {
 
   /** Frees its textures. */
   dispose(): void {
-    for (const owned of this.#passes.flat()) owned.dispose()
+    for (const owned of new Set(this.#passes.flat())) owned.dispose()
   }
 }
