@@ -1,4 +1,9 @@
-import { aerialPerspectiveTo, tableTarget, type AtmosphereView } from '@welkin/atmosphere'
+import {
+  aerialPerspectiveTo,
+  FragmentPass,
+  tableTarget,
+  type AtmosphereView
+} from '@welkin/atmosphere'
 import {
   Box2,
   BufferGeometry,
@@ -8,14 +13,11 @@ import {
   MaxEquation,
   Matrix3,
   Mesh,
-  NoBlending,
   OneFactor,
-  PlaneGeometry,
   RGFormat,
   Scene,
   Vector2,
-  Vector3,
-  Vector4
+  Vector3
 } from 'three'
 import { Fn, Discard, If, attribute, screenUV, texture, varying, vec2, vec3, vec4 } from 'three/tsl'
 import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
@@ -24,7 +26,7 @@ import type { CloudsNode } from '../march/CloudsNode'
 import { isDrawnBefore } from '../march/tsl/viewRay'
 import type { Bool, Float, LevelTexture, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
 import { matrix3, matrix4, number, vector3, vector4 } from '../uniforms'
-import { STORED_POWER, type PlacedChannel, type Point } from './channel'
+import { STORED_POWER, type ChannelPiece, type PlacedChannel } from './channel'
 
 /** Deviation of a channel's width in the picture [pixels]. Smaller: steps at its edges. */
 const WIDTH = 0.8
@@ -40,10 +42,9 @@ const LEAST_PASSING = 0.01
 
 const _toView = new Matrix3()
 const _point = new Vector3()
-const _clip = new Vector4()
-const _corner = new Vector2()
+const _pixel = new Vector2()
 const _box = new Box2()
-const _picture = new Box2(new Vector2(0, 0), new Vector2(1, 1))
+const _picture = new Box2(new Vector2())
 
 /** Quads of all pieces: which corner a vertex is, for its position, and where its piece begins and ends. */
 function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
@@ -81,18 +82,15 @@ export class BoltPass {
   readonly #scene = new Scene()
   readonly #material: NodeMaterial
   readonly #mesh: Mesh
-  readonly #eraser: Mesh<PlaneGeometry, NodeMaterial>
-  /** Both ends of all pieces, in the channel's frame [m]. */
-  #ends: readonly Point[] = []
+  readonly #eraser = new FragmentPass('Welkin.LightningErased', vec4(0))
   /** The channel's frame to view space [world units/m], and its place there. */
   readonly #toView = matrix3()
   readonly #placeView = vector3()
   /** The channel's place in its own frame, from the camera [m]. */
   readonly #place = vector3()
   readonly #projection = matrix4()
-  /** Box around the channel in the picture, and the last one drawn: its middle and half its size, y down. */
+  /** Box around the channel in the picture: its least and greatest place, y down. The target's scissor has it in pixels. */
   readonly #box = vector4()
-  readonly #lastBox = vector4()
   /** Luminous intensity of a metre of the stem, and that of branches, for `STORED_POWER` [cd/m]. */
   readonly #stemLight = number()
   readonly #branchLight = number()
@@ -103,37 +101,14 @@ export class BoltPass {
     this.#texture = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
     this.#material = this.#makeMaterial()
     this.#mesh = new Mesh(new BufferGeometry(), this.#material)
-    this.#eraser = new Mesh(new PlaneGeometry(2, 2), this.#makeEraser())
-    this.#eraser.renderOrder = -1
-    for (const mesh of [this.#mesh, this.#eraser]) {
-      mesh.frustumCulled = false
-      this.#scene.add(mesh)
-    }
+    this.#mesh.frustumCulled = false
+    this.#scene.add(this.#mesh)
   }
 
   /** Takes a channel's geometry. */
   set channel(channel: PlacedChannel) {
     this.#mesh.geometry.dispose()
     this.#mesh.geometry = quadsOf(channel)
-    this.#ends = channel.pieces.flatMap(({ from, to }) => [from, to])
-  }
-
-  /** Black, in the last box. */
-  #makeEraser(): NodeMaterial {
-    const material = new NodeMaterial()
-    Object.assign(material, {
-      name: 'Welkin.LightningErased',
-      blending: NoBlending,
-      depthTest: false,
-      depthWrite: false,
-      transparent: true,
-      side: DoubleSide
-    })
-    const corner = attribute('position', 'vec3') as unknown as Vec3
-    const at = corner.xy.mul(this.#lastBox.zw).add(this.#lastBox.xy)
-    material.vertexNode = vec4(at.mul(vec2(2, -2)).add(vec2(-1, 1)), 0.5, 1)
-    material.fragmentNode = vec4(0, 0, 0, 1)
-    return material
   }
 
   #makeMaterial(): NodeMaterial {
@@ -234,8 +209,7 @@ export class BoltPass {
   /** True in the box around the channel. To be called inside of a shader function. @param at - In the picture, y down. */
   isNear(at: Vec2): Bool {
     const box = this.#box as unknown as Vec4
-    const beyond = at.sub(box.xy).abs().sub(box.zw).toConst() as Vec2
-    return beyond.x.max(beyond.y).lessThan(0)
+    return at.clamp(box.xy, box.zw).distance(at).equal(0)
   }
 
   /** Red and blue of the channel, for `STORED_POWER`. To be called inside of a shader function. @param at - In the picture, y down. */
@@ -253,7 +227,7 @@ export class BoltPass {
     renderer: Renderer,
     { viewToMapped }: AtmosphereView,
     offset: Vector3,
-    { axes, brightLength }: PlacedChannel,
+    { axes, brightLength, pieces }: PlacedChannel,
     branches: number
   ): void {
     const [east, north, up] = axes
@@ -269,42 +243,38 @@ export class BoltPass {
     this.#stemLight.value = STORED_POWER / (4 * Math.PI * brightLength)
     this.#branchLight.value = this.#stemLight.value * branches
     const { x: width, y: height } = frame.size.value
-    if (this.#target.width !== width || this.#target.height !== height) {
-      this.#target.setSize(width, height)
-      this.#box.value.set(0.5, 0.5, 0.5, 0.5)
-    }
-    this.#lastBox.value.copy(this.#box.value)
-    this.#findBox()
+    const target = this.#target
+    if (target.width !== width || target.height !== height) target.setSize(width, height)
+    target.scissorTest = true
+    this.#eraser.render(renderer, target)
+    this.#findBox(pieces)
     const state = RendererUtils.resetRendererState(renderer, {} as never)
-    renderer.setRenderTarget(this.#target)
+    renderer.setRenderTarget(target)
     renderer.autoClear = false
     renderer.render(this.#scene, this.#clouds.camera)
     RendererUtils.restoreRendererState(renderer, state)
   }
 
   /** Sets the box around the channel, with the width of its lines. */
-  #findBox(): void {
-    const { size } = this.#clouds.passes.viewRays.frame
-    const margin = HALF_WIDTH + BEYOND + 1
+  #findBox(pieces: readonly ChannelPiece[]): void {
+    const { width, height, scissor } = this.#target
+    _picture.max.set(width, height)
     _box.makeEmpty()
-    for (const end of this.#ends) {
+    for (const end of pieces.flatMap(({ from, to }) => [from, to])) {
       _point
         .set(...end)
         .applyMatrix3(this.#toView.value)
         .add(this.#placeView.value)
-      const { x, y, w } = _clip.set(..._point.toArray(), 1).applyMatrix4(this.#projection.value)
-      // Behind the camera: what is before it may be anywhere.
-      if (w <= 0) _box.expandByPoint(_corner.set(-9, -9)).expandByPoint(_corner.set(9, 9))
-      else _box.expandByPoint(_corner.set(x / w, -y / w))
+      const isBehind = _point.z > 0
+      const { x, y } = _point.applyMatrix4(this.#projection.value)
+      // What is before the camera may be anywhere.
+      if (isBehind) _box.copy(_picture)
+      _box.expandByPoint(_pixel.set((1 + x) * width, (1 - y) * height).divideScalar(2))
     }
-    _box.min.addScalar(1).multiplyScalar(0.5)
-    _box.max.addScalar(1).multiplyScalar(0.5)
-    _box.expandByVector(_corner.set(margin, margin).divide(size.value))
-    _box.intersect(_picture)
-    const { min, max } = _box
-    this.#box.value.set(min.x + max.x, min.y + max.y, max.x - min.x, max.y - min.y)
-    this.#box.value.multiplyScalar(0.5)
-    if (_box.isEmpty()) this.#box.value.set(0, 0, 0, 0)
+    const { min, max } = _box.expandByScalar(HALF_WIDTH + BEYOND + 1)
+    for (const corner of [min, max]) corner.clamp(_picture.min, _picture.max)
+    scissor.set(min.x, min.y, max.x - min.x, max.y - min.y)
+    this.#box.value.set(min.x / width, min.y / height, max.x / width, max.y / height)
   }
 
   /** Frees its render target and geometry. */
@@ -312,7 +282,6 @@ export class BoltPass {
     this.#target.dispose()
     this.#mesh.geometry.dispose()
     this.#material.dispose()
-    this.#eraser.geometry.dispose()
-    this.#eraser.material.dispose()
+    this.#eraser.dispose()
   }
 }

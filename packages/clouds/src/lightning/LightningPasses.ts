@@ -8,7 +8,6 @@ import { Vector3, Vector4 } from 'three'
 import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
-import { select } from '../select'
 import { unpack } from '../temporal/tsl/packing'
 import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
 import {
@@ -47,7 +46,6 @@ const CLOUD_SOFTNESS = 250
 const HAZE_SOFTNESS = 25
 /** Longest path through lit haze [m]. */
 const LONGEST_HAZE = 60_000
-const LONGEST_OCTAVE = Math.log2(LONGEST_HAZE)
 
 /** Opacity of clouds below which their light is not seen [–]. */
 const LEAST_OPACITY = 1e-3
@@ -71,9 +69,6 @@ const TAPS = [
   [-1, 1],
   [1, 1]
 ] as const
-
-/** Straight pieces of the stem that light clouds: it is nearly straight. */
-const LINE_PIECES = 2
 
 /** Opacity around a pixel from which nothing of the air behind its clouds is seen. */
 const OPAQUE = 0.999
@@ -189,40 +184,31 @@ export class LightningPasses {
         seen: this.#seenAt(texel.add(0.5).div(marchedSize).toConst())
       }
     })
-    // Sums by opacity: of that, and of distances and depths.
-    const sums = taps
-      .map(({ seen }) => vec3(1, seen.yz).mul(seen.x))
-      .reduce((a, b) => a.add(b))
-      .toConst() as Vec3
-    const around = sums.yz.div(sums.x.max(1e-6)).toConst() as Vec2
-    // Where the pixel sees none, those that are around.
-    const isKnown = own.lessThan(LONGEST_OCTAVE)
-    const reference = select(isKnown, own.exp2(), around.x).max(1).toConst() as Float
-    const perLike = reference
-      .mul(LIKE * Math.LN2)
-      .reciprocal()
-      .toConst() as Float
-    // Sums of weights, of these by place and by its square, of distances from the pixel's, and of these by place.
-    let weights: Vec3 = vec3(0)
+    // Where the pixel sees none, the farthest around.
+    const farthest = taps.map(({ seen }) => seen.y as Float).reduce((a, b) => a.max(b))
+    const reference = own.exp2().min(farthest).max(1).toConst() as Float
+    // Sums of opacities; of weights, of these by place, depth and square of the place, of distances from the reference, and of these by place.
+    let opacity: Float = float(0)
+    let weights: Vec4 = vec4(0)
     let squares: Vec2 = vec2(0)
     let rises: Vec3 = vec3(0)
     for (const { shift, seen } of taps) {
       const rise = seen.y.sub(reference).toConst() as Float
-      const apart = rise.mul(perLike).toConst() as Float
+      const apart = rise.div(reference.mul(LIKE * Math.LN2)).toConst() as Float
       const weight = seen.x.div(apart.mul(apart).add(1)).toConst() as Float
-      weights = weights.add(vec3(1, shift).mul(weight)).toConst()
+      opacity = opacity.add(seen.x)
+      weights = weights.add(vec4(1, shift, seen.z).mul(weight)).toConst()
       squares = squares.add(shift.mul(shift).mul(weight)).toConst()
       rises = rises.add(vec3(1, shift).mul(rise.mul(weight))).toConst()
     }
-    const perWeight = weights.x.max(1e-9).reciprocal().toConst() as Float
-    const middle = weights.yz.mul(perWeight).toConst() as Vec2
-    const mean = rises.x.mul(perWeight).toConst() as Float
+    const mean = weights.yzw.div(weights.x.max(1e-9)).toConst() as Vec3
     const slopes = rises.yz
-      .sub(middle.mul(rises.x))
-      .div(squares.sub(middle.mul(weights.yz)).max(1e-3))
+      .sub(mean.xy.mul(rises.x))
+      .div(squares.sub(mean.xy.mul(weights.yz)).max(1e-3))
       .toConst() as Vec2
-    const distance = reference.add(mean).sub(slopes.dot(middle)).max(1).toConst() as Float
-    const blurred = around.y.mul(BLURRED).toConst() as Float
+    const rise = rises.x.div(weights.x.max(1e-9)).sub(slopes.dot(mean.xy))
+    const distance = reference.add(rise).max(1).toConst() as Float
+    const blurred = mean.z.mul(BLURRED).toConst() as Float
     const width = float(0).toVar() as Variable<Float>
     const normal = direction.negate().toVar() as Variable<Vec3>
     for (const [axis, slope] of [
@@ -237,7 +223,7 @@ export class LightningPasses {
     }
     const known = width.div(width.add(blurred)).toConst() as Float
     return {
-      opacity: sums.x.div(TAPS.length).toConst(),
+      opacity: opacity.div(TAPS.length).toConst(),
       distance,
       normal: normal.normalize().toConst(),
       known
@@ -247,15 +233,16 @@ export class LightningPasses {
   /** Mean of 1/(r² + s²) over the stem, for a place in clouds, in w, and of that times the direction to the stem [1/m²]. */
   #lineLight(place: Vec3): Vec4 {
     const sum = vec4(0).toVar() as Variable<Vec4>
-    loop('flashLine', LINE_PIECES, index => {
-      const first = index.mul(int((STEM_POINTS - 1) / LINE_PIECES)).toConst() as Int
-      const [from, to] = [first, first.add(int((STEM_POINTS - 1) / LINE_PIECES))].map(
+    loop('flashLine', 2, index => {
+      // The stem is nearly straight.
+      const first = index.mul(int(2)).toConst() as Int
+      const [from, to] = [first, first.add(int(2))].map(
         i => this.#stemArray.element(i).xyz.sub(place).toConst() as Vec3
       )
       const light = meanInverseSquare(from, to, float(CLOUD_SOFTNESS))
       sum.addAssign(vec4(from.add(to).normalize(), 1).mul(light))
     })
-    return sum.div(LINE_PIECES).toConst()
+    return sum.div(2).toConst()
   }
 
   /** Light that the air on a ray scatters once, without direction, for `STORED_POWER` [cd/m²]: from three points of the stem. */
