@@ -19,12 +19,22 @@ import {
   Vector2,
   Vector3
 } from 'three'
-import { Fn, Discard, If, attribute, screenUV, texture, varying, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, Discard, If, attribute, mix, screenUV, texture, varying, vec2, vec4 } from 'three/tsl'
 import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
 import { select } from '../select'
 import type { CloudsNode } from '../march/CloudsNode'
 import { isDrawnBefore } from '../march/tsl/viewRay'
-import type { Bool, Float, LevelTexture, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
+import type {
+  Bool,
+  Float,
+  LevelTexture,
+  Mat3,
+  Mat4,
+  Variable,
+  Vec2,
+  Vec3,
+  Vec4
+} from '../tsl-types'
 import { matrix3, matrix4, number, vector3, vector4 } from '../uniforms'
 import { STORED_POWER, type ChannelPiece, type PlacedChannel } from './channel'
 
@@ -123,12 +133,10 @@ export class BoltPass {
     const clip = (p: Vec3): Vec4 =>
       projection.mul(vec4(toView.mul(p).add(this.#placeView), 1)).toConst()
     const pixels = (p: Vec4): Vec2 => p.xy.div(p.w.max(1e-6)).mul(frame.size).mul(0.5).toConst()
-    /** Place in pixels along and across the piece, its length in pixels, and the distance [m]. */
-    const place = varying(vec4(0)) as unknown as Vec4 & { assign: (v: unknown) => void }
-    /** Brightness, whether it is a branch, and z in view space. */
-    const brightness = varying(vec3(0)) as unknown as Vec3 & { assign: (v: unknown) => void }
-    /** Light that air and clouds let through. */
-    const air = varying(vec3(1)) as unknown as Vec3 & { assign: (v: unknown) => void }
+    /** Place in pixels along and across the piece, its length in pixels, and z in view space. */
+    const place = varying(vec4(0)) as unknown as Variable<Vec4>
+    /** Luminance of its middle in red and blue. */
+    const light = varying(vec2(0)) as unknown as Variable<Vec2>
     /** Share of light that clouds let through from a distance, at a place in pixels from the middle. */
     const passingAt = (pixel: Vec2, distance: Float): Float => {
       const at = pixel.div(frame.size).mul(vec2(1, -1)).add(0.5).clamp(0, 1).toConst() as Vec2
@@ -160,48 +168,34 @@ export class BoltPass {
       const [start, stop] = [pixels(a), pixels(b)]
       const line = stop.sub(start).toConst() as Vec2
       const length = line.length().toConst() as Float
-      const along = select(
-        length.greaterThan(1e-3),
-        line.div(length.max(1e-3)),
-        vec2(1, 0)
-      ).toConst() as Vec2
+      const along = line.div(length.max(1e-3)).toConst() as Vec2
       const beyond = corner.x.mul(2).sub(1).mul(BEYOND)
       const at = length.mul(corner.x).add(beyond).toConst() as Float
       const across = corner.y.mul(HALF_WIDTH).toConst() as Float
       const pixel = start.add(along.mul(at)).add(vec2(along.y.negate(), along.x).mul(across))
-      const [near, far] = [from, to].map(p => p.xyz.add(this.#place).length().toConst() as Float)
-      const passing = vec2(passingAt(start, near), passingAt(stop, far)).toConst() as Vec2
-      const isFirst = corner.x.lessThan(0.5)
-      place.assign(vec4(at, across, length, select(isFirst, near, far)))
+      const end = mix(from.xyz, to.xyz, corner.x).toConst() as Vec3
+      const distance = end.add(this.#place).length().toConst() as Float
+      const passing = passingAt(mix(start, stop, corner.x), distance)
       const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
-      const displacement = toView
-        .mul(select(isFirst, from.xyz, to.xyz))
-        .add(this.#placeView)
-        .toConst()
-      brightness.assign(vec3(from.w, to.w, displacement.z))
+      const displacement = toView.mul(end).add(this.#placeView).toConst()
+      place.assign(vec4(at, across, length, displacement.z))
       const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
-      air.assign(transmittance.mul(select(isFirst, passing.x, passing.y)))
-      // In front of the camera and not in clouds, or else nowhere.
-      const isSeen = a.w.min(b.w).greaterThan(0).and(passing.x.max(passing.y).greaterThan(0))
+      const width = distance.mul(field.pixelAngle).mul(WIDTH * Math.sqrt(2 * Math.PI))
+      const perMetre = mix(this.#stemLight, this.#branchLight, to.w).mul(from.w)
+      light.assign(transmittance.xz.mul(perMetre).mul(passing).div(width))
+      // In front of the camera, or else nowhere.
+      const isSeen = a.w.min(b.w).greaterThan(0)
       return select(isSeen, vec4(pixel.div(frame.size).mul(2), 0.5, 1), vec4(2, 2, 2, 1))
     })()
     material.fragmentNode = Fn(() => {
       const beside = place.x.sub(place.x.clamp(0, place.z)).toConst() as Float
       const square = beside.mul(beside).add(place.y.mul(place.y)).toConst() as Float
-      const distance = place.w.toConst() as Float
       // The channel is above the ground.
-      If(isDrawnBefore(viewRays, vec2(screenUV), brightness.z.mul(0.999)), () => {
+      If(isDrawnBefore(viewRays, vec2(screenUV), place.w.mul(0.999)), () => {
         Discard()
       })
-      const width = distance.mul(field.pixelAngle).mul(WIDTH * Math.sqrt(2 * Math.PI))
-      const perMetre = select(brightness.y.greaterThan(0.5), this.#branchLight, this.#stemLight)
-      const luminance = square
-        .mul(-0.5 / WIDTH ** 2)
-        .exp()
-        .mul(perMetre)
-        .mul(brightness.x)
-        .div(width)
-      return vec4(air.xz.mul(luminance).min(GREATEST), 0, 1)
+      const luminance = light.mul(square.mul(-0.5 / WIDTH ** 2).exp())
+      return vec4(luminance.min(GREATEST), 0, 1)
     })()
     return material
   }

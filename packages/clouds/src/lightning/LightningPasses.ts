@@ -216,18 +216,14 @@ export class LightningPasses {
       [vec2(0, 1), slopes.y]
     ] as const) {
       const step = axis.mul(block).div(size)
-      const next = viewRayAt(viewRays, here.add(step).toConst()).direction
-      const aside = next.sub(direction.mul(next.dot(direction))).toConst() as Vec3
+      const next = viewRayAt(viewRays, here.add(step).toConst())
+      const aside = next.direction.sub(direction).toConst() as Vec3
       width.assign(aside.length().mul(distance))
       normal.addAssign(aside.normalize().mul(slope.div(width.add(blurred))))
     }
     const known = width.div(width.add(blurred)).toConst() as Float
-    return {
-      opacity: opacity.div(TAPS.length).toConst(),
-      distance,
-      normal: normal.normalize().toConst(),
-      known
-    }
+    opacity = opacity.div(TAPS.length).toConst()
+    return { opacity, distance, normal: normal.normalize().toConst(), known }
   }
 
   /** Mean of 1/(r² + s²) over the stem, for a place in clouds, in w, and of that times the direction to the stem [1/m²]. */
