@@ -18,18 +18,27 @@ const NIGHTS = [0.04, 0.35] as const
 /** Least mean where black space fills most of the picture [–]. */
 const IN_SPACE = 0.1
 
+/** Least and greatest mean of a picture that is exposed for a luminance [cd/m²]. */
+const meansAt = (luminance: number, isInSpace: boolean): readonly [number, number] =>
+  luminance < NIGHT ? NIGHTS : [isInSpace ? IN_SPACE : DAYS[0], DAYS[1]]
+
 /**
  * Fault of how a picture is exposed; undefined where there is none.
  *
  * @param luminance - Luminance that it is exposed for [cd/m²].
  * @param isInSpace - True where black space fills most of it.
+ * @param compensation - Exposure over that, for a dark part of it, of which the rest may be bright, or below it, for a bright one [EV].
  */
 export function toneFault(
   { mean, clipped }: Tones,
   luminance: number,
-  isInSpace = false
+  isInSpace = false,
+  compensation = 0
 ): string | undefined {
-  const [least, most] = luminance < NIGHT ? NIGHTS : [isInSpace ? IN_SPACE : DAYS[0], DAYS[1]]
+  if (compensation < 0) return undefined
+  const [least, most] = meansAt(luminance, isInSpace)
+  if (compensation > 0)
+    return mean >= least ? undefined : `its mean is ${mean.toFixed(3)}, not ${least} at least`
   if (!(clipped <= CLIPPED))
     return `${(100 * clipped).toFixed(1)} % is clipped, not ${100 * CLIPPED} % at most`
   if (mean >= least && mean <= most) return undefined

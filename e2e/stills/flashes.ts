@@ -45,6 +45,7 @@ export const flashes = [
     altitude: 200,
     sun: new Date('2026-06-14T14:00:00Z'),
     view: { azimuth: 0, pitch: 16 },
+    compensation: 1.3,
     land: 'hills'
   }
 ] as const

@@ -112,10 +112,10 @@ async function take(
   }
 }
 
-/** Fault of how a still is exposed; those that are exposed for a part of the picture have none. */
+/** Fault of how a still is exposed. */
 function faultOf(still: AnyStill, { tones, luminance }: Taken): string | undefined {
-  if ('compensation' in still) return undefined
-  return toneFault(tones, luminance, 'inSpace' in still)
+  const compensation = 'compensation' in still ? still.compensation : 0
+  return toneFault(tones, luminance, 'inSpace' in still, compensation)
 }
 
 /** @param isPlanet - True if it shows metres and a planet at once. */

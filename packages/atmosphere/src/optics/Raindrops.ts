@@ -29,13 +29,13 @@ const DEFAULT_RATE = 5
  */
 export class Raindrops implements ScatteringPhase {
   readonly #texture = new PhaseTexture('Raindrops', 1)
-  #rate = DEFAULT_RATE
+  #rate = 0
   #asymmetry = 0
   #version = 0
 
   /** @throws If the rate is out of its range. */
   constructor(options: RaindropsOptions = {}) {
-    this.set({ rate: DEFAULT_RATE })
+    this.rate = DEFAULT_RATE
     this.set(options)
     this.#version = 0
   }

@@ -1,6 +1,11 @@
-import { aerialPerspectiveTo, tableTarget, type AtmosphereView } from '@welkin/atmosphere'
-import type { Vector3 } from 'three'
 import {
+  aerialPerspectiveTo,
+  FragmentPass,
+  tableTarget,
+  type AtmosphereView
+} from '@welkin/atmosphere'
+import {
+  Box2,
   BufferGeometry,
   CustomBlending,
   DoubleSide,
@@ -10,16 +15,28 @@ import {
   Mesh,
   OneFactor,
   RGFormat,
-  Scene
+  Scene,
+  Vector2,
+  Vector3
 } from 'three'
-import { Fn, Discard, If, attribute, screenUV, texture, varying, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, Discard, If, attribute, mix, screenUV, texture, varying, vec2, vec4 } from 'three/tsl'
 import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
 import { select } from '../select'
 import type { CloudsNode } from '../march/CloudsNode'
 import { isDrawnBefore } from '../march/tsl/viewRay'
-import type { Float, LevelTexture, Mat3, Mat4, Vec2, Vec3, Vec4 } from '../tsl-types'
-import { matrix3, matrix4, number, vector3 } from '../uniforms'
-import { STORED_POWER, type PlacedChannel } from './channel'
+import type {
+  Bool,
+  Float,
+  LevelTexture,
+  Mat3,
+  Mat4,
+  Variable,
+  Vec2,
+  Vec3,
+  Vec4
+} from '../tsl-types'
+import { matrix3, matrix4, number, vector3, vector4 } from '../uniforms'
+import { STORED_POWER, type ChannelPiece, type PlacedChannel } from './channel'
 
 /** Deviation of a channel's width in the picture [pixels]. Smaller: steps at its edges. */
 const WIDTH = 0.8
@@ -34,6 +51,10 @@ const HIDING = 0.005
 const LEAST_PASSING = 0.01
 
 const _toView = new Matrix3()
+const _point = new Vector3()
+const _pixel = new Vector2()
+const _box = new Box2()
+const _picture = new Box2(new Vector2())
 
 /** Quads of all pieces: which corner a vertex is, for its position, and where its piece begins and ends. */
 function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
@@ -65,18 +86,21 @@ function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
 /** A channel of lightning as thin bright lines, hidden by what was drawn and dimmed by clouds and air before it. */
 export class BoltPass {
   readonly #clouds: CloudsNode
-  /** Red and blue alone: to clear it costs more than to draw the few pixels of a channel. */
+  /** Red and blue alone; dark but for the few pixels of a channel, of which the next frame clears the box: to clear all of it costs more than the channel. */
   readonly #target = tableTarget('Welkin.LightningChannel', 1, 1)
   readonly #texture: LevelTexture<Vec2>
   readonly #scene = new Scene()
   readonly #material: NodeMaterial
   readonly #mesh: Mesh
+  readonly #eraser = new FragmentPass('Welkin.LightningErased', vec4(0))
   /** The channel's frame to view space [world units/m], and its place there. */
   readonly #toView = matrix3()
   readonly #placeView = vector3()
   /** The channel's place in its own frame, from the camera [m]. */
   readonly #place = vector3()
   readonly #projection = matrix4()
+  /** Box around the channel in the picture: its least and greatest place, y down. The target's scissor has it in pixels. */
+  readonly #box = vector4()
   /** Luminous intensity of a metre of the stem, and that of branches, for `STORED_POWER` [cd/m]. */
   readonly #stemLight = number()
   readonly #branchLight = number()
@@ -109,12 +133,10 @@ export class BoltPass {
     const clip = (p: Vec3): Vec4 =>
       projection.mul(vec4(toView.mul(p).add(this.#placeView), 1)).toConst()
     const pixels = (p: Vec4): Vec2 => p.xy.div(p.w.max(1e-6)).mul(frame.size).mul(0.5).toConst()
-    /** Place in pixels along and across the piece, its length in pixels, and the distance [m]. */
-    const place = varying(vec4(0)) as unknown as Vec4 & { assign: (v: unknown) => void }
-    /** Brightness, whether it is a branch, and z in view space. */
-    const brightness = varying(vec3(0)) as unknown as Vec3 & { assign: (v: unknown) => void }
-    /** Light that air and clouds let through. */
-    const air = varying(vec3(1)) as unknown as Vec3 & { assign: (v: unknown) => void }
+    /** Place in pixels along and across the piece, its length in pixels, and z in view space. */
+    const place = varying(vec4(0)) as unknown as Variable<Vec4>
+    /** Luminance of its middle in red and blue. */
+    const light = varying(vec2(0)) as unknown as Variable<Vec2>
     /** Share of light that clouds let through from a distance, at a place in pixels from the middle. */
     const passingAt = (pixel: Vec2, distance: Float): Float => {
       const at = pixel.div(frame.size).mul(vec2(1, -1)).add(0.5).clamp(0, 1).toConst() as Vec2
@@ -146,50 +168,42 @@ export class BoltPass {
       const [start, stop] = [pixels(a), pixels(b)]
       const line = stop.sub(start).toConst() as Vec2
       const length = line.length().toConst() as Float
-      const along = select(
-        length.greaterThan(1e-3),
-        line.div(length.max(1e-3)),
-        vec2(1, 0)
-      ).toConst() as Vec2
+      const along = line.div(length.max(1e-3)).toConst() as Vec2
       const beyond = corner.x.mul(2).sub(1).mul(BEYOND)
       const at = length.mul(corner.x).add(beyond).toConst() as Float
       const across = corner.y.mul(HALF_WIDTH).toConst() as Float
       const pixel = start.add(along.mul(at)).add(vec2(along.y.negate(), along.x).mul(across))
-      const [near, far] = [from, to].map(p => p.xyz.add(this.#place).length().toConst() as Float)
-      const passing = vec2(passingAt(start, near), passingAt(stop, far)).toConst() as Vec2
-      const isFirst = corner.x.lessThan(0.5)
-      place.assign(vec4(at, across, length, select(isFirst, near, far)))
+      const end = mix(from.xyz, to.xyz, corner.x).toConst() as Vec3
+      const distance = end.add(this.#place).length().toConst() as Float
+      const passing = passingAt(mix(start, stop, corner.x), distance)
       const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
-      const displacement = toView
-        .mul(select(isFirst, from.xyz, to.xyz))
-        .add(this.#placeView)
-        .toConst()
-      brightness.assign(vec3(from.w, to.w, displacement.z))
+      const displacement = toView.mul(end).add(this.#placeView).toConst()
+      place.assign(vec4(at, across, length, displacement.z))
       const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
-      air.assign(transmittance.mul(select(isFirst, passing.x, passing.y)))
-      // In front of the camera and not in clouds, or else nowhere.
-      const isSeen = a.w.min(b.w).greaterThan(0).and(passing.x.max(passing.y).greaterThan(0))
+      const width = distance.mul(field.pixelAngle).mul(WIDTH * Math.sqrt(2 * Math.PI))
+      const perMetre = mix(this.#stemLight, this.#branchLight, to.w).mul(from.w)
+      light.assign(transmittance.xz.mul(perMetre).mul(passing).div(width))
+      // In front of the camera, or else nowhere.
+      const isSeen = a.w.min(b.w).greaterThan(0)
       return select(isSeen, vec4(pixel.div(frame.size).mul(2), 0.5, 1), vec4(2, 2, 2, 1))
     })()
     material.fragmentNode = Fn(() => {
       const beside = place.x.sub(place.x.clamp(0, place.z)).toConst() as Float
       const square = beside.mul(beside).add(place.y.mul(place.y)).toConst() as Float
-      const distance = place.w.toConst() as Float
       // The channel is above the ground.
-      If(isDrawnBefore(viewRays, vec2(screenUV), brightness.z.mul(0.999)), () => {
+      If(isDrawnBefore(viewRays, vec2(screenUV), place.w.mul(0.999)), () => {
         Discard()
       })
-      const width = distance.mul(field.pixelAngle).mul(WIDTH * Math.sqrt(2 * Math.PI))
-      const perMetre = select(brightness.y.greaterThan(0.5), this.#branchLight, this.#stemLight)
-      const luminance = square
-        .mul(-0.5 / WIDTH ** 2)
-        .exp()
-        .mul(perMetre)
-        .mul(brightness.x)
-        .div(width)
-      return vec4(air.xz.mul(luminance).min(GREATEST), 0, 1)
+      const luminance = light.mul(square.mul(-0.5 / WIDTH ** 2).exp())
+      return vec4(luminance.min(GREATEST), 0, 1)
     })()
     return material
+  }
+
+  /** True in the box around the channel. To be called inside of a shader function. @param at - In the picture, y down. */
+  isNear(at: Vec2): Bool {
+    const box = this.#box as unknown as Vec4
+    return at.clamp(box.xy, box.zw).distance(at).equal(0)
   }
 
   /** Red and blue of the channel, for `STORED_POWER`. To be called inside of a shader function. @param at - In the picture, y down. */
@@ -207,7 +221,7 @@ export class BoltPass {
     renderer: Renderer,
     { viewToMapped }: AtmosphereView,
     offset: Vector3,
-    { axes, brightLength }: PlacedChannel,
+    { axes, brightLength, pieces }: PlacedChannel,
     branches: number
   ): void {
     const [east, north, up] = axes
@@ -222,13 +236,39 @@ export class BoltPass {
     frame.projectionOf(this.#clouds.camera, this.#projection.value)
     this.#stemLight.value = STORED_POWER / (4 * Math.PI * brightLength)
     this.#branchLight.value = this.#stemLight.value * branches
+    const { x: width, y: height } = frame.size.value
+    const target = this.#target
+    if (target.width !== width || target.height !== height) target.setSize(width, height)
+    target.scissorTest = true
+    this.#eraser.render(renderer, target)
+    this.#findBox(pieces)
     const state = RendererUtils.resetRendererState(renderer, {} as never)
-    this.#target.setSize(frame.size.value.x, frame.size.value.y)
-    renderer.setRenderTarget(this.#target)
-    renderer.setClearColor(0x000000, 0)
-    renderer.autoClear = true
+    renderer.setRenderTarget(target)
+    renderer.autoClear = false
     renderer.render(this.#scene, this.#clouds.camera)
     RendererUtils.restoreRendererState(renderer, state)
+  }
+
+  /** Sets the box around the channel, with the width of its lines. */
+  #findBox(pieces: readonly ChannelPiece[]): void {
+    const { width, height, scissor } = this.#target
+    _picture.max.set(width, height)
+    _box.makeEmpty()
+    for (const end of pieces.flatMap(({ from, to }) => [from, to])) {
+      _point
+        .set(...end)
+        .applyMatrix3(this.#toView.value)
+        .add(this.#placeView.value)
+      const isBehind = _point.z > 0
+      const { x, y } = _point.applyMatrix4(this.#projection.value)
+      // What is before the camera may be anywhere.
+      if (isBehind) _box.copy(_picture)
+      _box.expandByPoint(_pixel.set((1 + x) * width, (1 - y) * height).divideScalar(2))
+    }
+    const { min, max } = _box.expandByScalar(HALF_WIDTH + BEYOND + 1)
+    for (const corner of [min, max]) corner.clamp(_picture.min, _picture.max)
+    scissor.set(min.x, min.y, max.x - min.x, max.y - min.y)
+    this.#box.value.set(min.x / width, min.y / height, max.x / width, max.y / height)
   }
 
   /** Frees its render target and geometry. */
@@ -236,5 +276,6 @@ export class BoltPass {
     this.#target.dispose()
     this.#mesh.geometry.dispose()
     this.#material.dispose()
+    this.#eraser.dispose()
   }
 }

@@ -8,14 +8,13 @@ import { Vector3, Vector4 } from 'three'
 import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
-import { marchedPixel } from '../march/tsl/marchedPixel'
-import { CORNERS } from '../temporal/tsl/cells'
 import { unpack } from '../temporal/tsl/packing'
 import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
 import {
   loop,
   vec4Array,
   type Float,
+  type Int,
   type LevelTexture,
   type Variable,
   type Vec2,
@@ -25,6 +24,7 @@ import {
 import { number, vector2 } from '../uniforms'
 import { BoltPass } from './BoltPass'
 import {
+  CHANNEL_COLOR,
   fromCamera,
   STEM_POINTS,
   STORED_POWER,
@@ -33,7 +33,7 @@ import {
 } from './channel'
 import { hazeAt } from './hazeAt'
 import { StormDensity } from './StormDensity'
-import { channelColor } from './tsl/channelColor'
+import { channelTint } from './tsl/channelTint'
 import { limbDarkening } from './tsl/limbDarkening'
 import { meanInverseSquare } from './tsl/lineLight'
 
@@ -46,7 +46,6 @@ const CLOUD_SOFTNESS = 250
 const HAZE_SOFTNESS = 25
 /** Longest path through lit haze [m]. */
 const LONGEST_HAZE = 60_000
-const LONGEST_OCTAVE = Math.log2(LONGEST_HAZE)
 
 /** Opacity of clouds below which their light is not seen [–]. */
 const LEAST_OPACITY = 1e-3
@@ -59,14 +58,23 @@ const UNFACED = 1 / 3
 
 /** Share of the depth that one looks into clouds in which form is lost. Greater: heads without form; smaller: grain (*Storm at night*). */
 const BLURRED = 0.25
-/** Difference of log₂ of distances at which light or place of a neighbour counts half, of clouds and of what was drawn. Greater: heads and ridges shine over others' edges; smaller: grain. */
+/** Difference of log₂ of distances at which a neighbour's counts half. Greater: heads and ridges shine over others' edges; smaller: grain. */
 const LIKE = 0.03
-const AIR_LIKE = 0.3
-/** Weight of dark air where neighbours are at other distances. 0: bright lines around what stands before the sky. */
-const DARK = 0.01
+
+/** Marched pixels whose distances make a face, from the nearest one on. */
+const TAPS = [
+  [0, 0],
+  [-1, -1],
+  [1, -1],
+  [-1, 1],
+  [1, 1]
+] as const
+
+/** Opacity around a pixel from which nothing of the air behind its clouds is seen. */
+const OPAQUE = 0.999
 
 /** Edge of a pixel of the light, in the picture's. Greater: heads with blurred outlines. */
-const LIGHT_PIXEL = 3
+const LIGHT_PIXEL = 4
 
 const _offset = new Vector3()
 
@@ -81,10 +89,6 @@ export class LightningPasses {
   /** Points of the stem from the camera, in the mapped space [m], and scattering by air there [1/m]. */
   readonly #stem: readonly Vector4[] = Array.from({ length: STEM_POINTS }, () => new Vector4())
   readonly #stemArray = vec4Array(this.#stem as Vector4[])
-  /** Light of the marched pixels' clouds, and of all pixels. */
-  readonly #glowTarget = tableTarget('Welkin.LightningGlow', 1, 1)
-  readonly #glow: LevelTexture<Vec2>
-  readonly #glowPass: FragmentPass
   readonly #target = tableTarget('Welkin.Lightning', 1, 1)
   readonly #light: LevelTexture<Vec2>
   readonly #pass: FragmentPass
@@ -93,10 +97,8 @@ export class LightningPasses {
 
   constructor(clouds: CloudsNode) {
     this.#clouds = clouds
-    this.#glow = texture(this.#glowTarget.texture) as unknown as LevelTexture<Vec2>
     this.#light = texture(this.#target.texture) as unknown as LevelTexture<Vec2>
     this.#density = new StormDensity(clouds.field)
-    this.#glowPass = new FragmentPass('Welkin.LightningGlow', this.#clouded())
     this.#pass = new FragmentPass('Welkin.Lightning', this.#lit())
     this.#bolt = new BoltPass(clouds)
   }
@@ -108,23 +110,25 @@ export class LightningPasses {
   }
 
   /**
-   * One pixel of each block: red and blue of the light of its clouds and of the air before them, for `STORED_POWER`; 1, or 0 where there are no clouds; and light of the air
-   * before what was drawn.
+   * Light of a pixel, for `STORED_POWER`: that of its clouds with the air before them, and in alpha that of the air before what was drawn, both over the
+   * channel's colour.
    */
-  #clouded(): Vec4 {
-    const { passes, field } = this.#clouds
-    const { viewRays } = passes
+  #lit(): Vec4 {
+    const { viewRays } = this.#clouds.passes
+    const { field } = this.#clouds
     const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
     return Fn(() => {
-      const { at } = marchedPixel(viewRays)
       const here = uv() as unknown as Vec2
-      const ray = viewRayAt(viewRays, at)
+      const ray = viewRayAt(viewRays, here)
       const { direction, directionView } = ray
-      const end = viewRayEnd(viewRays, at, ray).min(LONGEST_HAZE).toConst()
-      const light = vec3(0).toVar() as Variable<Vec3>
-      const seen = this.#seenAt(here)
-      If(seen.x.greaterThan(LEAST_OPACITY), () => {
-        const { distance, normal, known } = this.#faceAt(here, at, direction, seen)
+      const { opacity, distance, normal, known } = this.#faceAt(here, direction)
+      const air = float(0).toVar() as Variable<Float>
+      If(opacity.lessThan(OPAQUE), () => {
+        const end = viewRayEnd(viewRays, here, ray).min(LONGEST_HAZE).toConst()
+        air.assign(this.#hazeLight(direction, end))
+      })
+      const light = vec2(air).toVar() as Variable<Vec2>
+      If(opacity.greaterThan(LEAST_OPACITY), () => {
         const place = direction.mul(distance).toConst() as Vec3
         const line = this.#lineLight(place)
         const out = this.#density.lightOut(place)
@@ -138,11 +142,12 @@ export class LightningPasses {
         const lit = line.w.mul(out.x).mul(face)
         const displacement = directionView.mul(distance).toConst()
         const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
-        const before = this.#hazeLight(direction, distance.min(LONGEST_HAZE).toConst())
+        const before = this.#hazeLight(direction, distance.min(LONGEST_HAZE).toConst()).toConst()
         const radiance = transmittance.xz.mul(lit).mul(STORED_POWER / (4 * Math.PI ** 2))
-        light.assign(vec3(radiance.add(before), 1))
+        light.assign(radiance.add(before))
+        air.assign(air.max(before))
       })
-      return vec4(light, this.#hazeLight(direction, end))
+      return vec4(channelTint(light), air)
     })()
   }
 
@@ -158,115 +163,82 @@ export class LightningPasses {
   }
 
   /**
-   * Face of a marched pixel's clouds: its distance [m] and normal, and from 0 to 1 how much of one they have. A plane through nine pixels: single ones have
-   * the march's grain. To be called inside of a shader function.
+   * Face of a pixel's clouds: their opacity around, its distance [m] and normal, and from 0 to 1 how much of a face they have. A plane through those of five
+   * marched pixels that are as far as the pixel's own, by history: single ones have the march's grain. To be called inside of a shader function.
    *
-   * @param here - Place of the marched pixel in its textures, and `at` in the picture.
-   * @param seen - `#seenAt` there.
+   * @param here - Place in the picture, y down.
    */
   #faceAt(
     here: Vec2,
-    at: Vec2,
-    direction: Vec3,
-    seen: Vec3
-  ): { distance: Float; normal: Vec3; known: Float } {
-    const { viewRays } = this.#clouds.passes
+    direction: Vec3
+  ): { opacity: Float; distance: Float; normal: Vec3; known: Float } {
+    const { viewRays, accumulated } = this.#clouds.passes
     const { marchedSize, block, size } = viewRays.frame
-    // Sums of weights, of these by place and by its square, of distances from the pixel's, and of these by place.
-    const weights = vec3(0).toVar() as Variable<Vec3>
-    const squares = vec2(0).toVar() as Variable<Vec2>
-    const rises = vec3(0).toVar() as Variable<Vec3>
-    loop('faceTap', 9, index => {
-      const row = index.div(int(3)).toConst()
-      const shift = vec2(index.sub(row.mul(3)), row)
-        .sub(1)
-        .toConst() as Vec2
-      const there = this.#seenAt(here.add(shift.div(marchedSize)).toConst())
-      const rise = there.y.sub(seen.y).toConst() as Float
-      const apart = rise.div(seen.y.mul(LIKE * Math.LN2)).toConst()
-      const weight = there.x.div(apart.mul(apart).add(1)).toConst() as Float
-      weights.addAssign(vec3(1, shift).mul(weight))
-      squares.addAssign(shift.mul(shift).mul(weight))
-      rises.addAssign(vec3(1, shift).mul(rise.mul(weight)))
+    const own = unpack(accumulated.distances.sample(here).level(0)).x
+    const place = here.mul(this.#scale).add(this.#offset).mul(marchedSize).sub(0.5).toConst()
+    const nearest = place.add(0.5).floor().toConst() as Vec2
+    const taps = TAPS.map(tap => {
+      const texel = nearest.add(vec2(...tap)).toConst() as Vec2
+      return {
+        shift: texel.sub(place).toConst(),
+        seen: this.#seenAt(texel.add(0.5).div(marchedSize).toConst())
+      }
     })
-    const middle = weights.yz.div(weights.x).toConst() as Vec2
-    const mean = rises.x.div(weights.x).toConst() as Float
+    // Where the pixel sees none, the farthest around.
+    const farthest = taps.map(({ seen }) => seen.y as Float).reduce((a, b) => a.max(b))
+    const reference = own.exp2().min(farthest).max(1).toConst() as Float
+    // Sums of opacities; of weights, of these by place, depth and square of the place, of distances from the reference, and of these by place.
+    let opacity: Float = float(0)
+    let weights: Vec4 = vec4(0)
+    let squares: Vec2 = vec2(0)
+    let rises: Vec3 = vec3(0)
+    for (const { shift, seen } of taps) {
+      const rise = seen.y.sub(reference).toConst() as Float
+      const apart = rise.div(reference.mul(LIKE * Math.LN2)).toConst() as Float
+      const weight = seen.x.div(apart.mul(apart).add(1)).toConst() as Float
+      opacity = opacity.add(seen.x)
+      weights = weights.add(vec4(1, shift, seen.z).mul(weight)).toConst()
+      squares = squares.add(shift.mul(shift).mul(weight)).toConst()
+      rises = rises.add(vec3(1, shift).mul(rise.mul(weight))).toConst()
+    }
+    const mean = weights.yzw.div(weights.x.max(1e-9)).toConst() as Vec3
     const slopes = rises.yz
-      .sub(middle.mul(rises.x))
-      .div(squares.sub(middle.mul(weights.yz)).max(1e-3))
+      .sub(mean.xy.mul(rises.x))
+      .div(squares.sub(mean.xy.mul(weights.yz)).max(1e-3))
       .toConst() as Vec2
+    const rise = rises.x.div(weights.x.max(1e-9)).sub(slopes.dot(mean.xy))
+    const distance = reference.add(rise).max(1).toConst() as Float
+    const blurred = mean.z.mul(BLURRED).toConst() as Float
     const width = float(0).toVar() as Variable<Float>
-    const blurred = seen.z.mul(BLURRED).toConst() as Float
     const normal = direction.negate().toVar() as Variable<Vec3>
     for (const [axis, slope] of [
       [vec2(1, 0), slopes.x],
       [vec2(0, 1), slopes.y]
     ] as const) {
       const step = axis.mul(block).div(size)
-      const next = viewRayAt(viewRays, at.add(step).toConst()).direction
-      const aside = next.sub(direction.mul(next.dot(direction))).toConst() as Vec3
-      width.assign(aside.length().mul(seen.y))
+      const next = viewRayAt(viewRays, here.add(step).toConst())
+      const aside = next.direction.sub(direction).toConst() as Vec3
+      width.assign(aside.length().mul(distance))
       normal.addAssign(aside.normalize().mul(slope.div(width.add(blurred))))
     }
-    const distance = seen.y.add(mean).sub(slopes.dot(middle)).max(1).toConst() as Float
     const known = width.div(width.add(blurred)).toConst() as Float
-    return { distance, normal: normal.normalize().toConst(), known }
-  }
-
-  /**
-   * Light of a pixel, for `STORED_POWER`, from the marched ones around that are as far: red and blue of its clouds, and that of its air.
-   */
-  #lit(): Vec4 {
-    const { viewRays, accumulated, seen } = this.#clouds.passes
-    const { marchedSize } = viewRays.frame
-    return Fn(() => {
-      const here = uv() as unknown as Vec2
-      const own = unpack(accumulated.distances.sample(here).level(0))
-        .xy.min(LONGEST_OCTAVE)
-        .toConst()
-      const place = here.mul(this.#scale).add(this.#offset).mul(marchedSize).sub(0.5).toConst()
-      const first = place.floor().toConst() as Vec2
-      const part = place.sub(first).toConst() as Vec2
-      const clouds = vec3(0).toVar() as Variable<Vec3>
-      const airs = vec2(0, DARK).toVar() as Variable<Vec2>
-      for (const [x, y] of CORNERS) {
-        const texel = first
-          .add(vec2(x + 0.5, y + 0.5))
-          .div(marchedSize)
-          .toConst()
-        const found = this.#glow.sample(texel).level(0).toConst() as Vec4
-        const weights = mix(part.oneMinus(), part, vec2(x, y)).toConst() as Vec2
-        const distances = seen.ray.sample(texel).level(0).xy.min(LONGEST_OCTAVE)
-        const apart = distances
-          .sub(own)
-          .mul(vec2(1 / LIKE, 1 / AIR_LIKE))
-          .toConst()
-        const like = weights.x
-          .mul(weights.y)
-          .add(1e-3)
-          .div(apart.mul(apart).add(1))
-          .toConst() as Vec2
-        clouds.addAssign(vec3(found.xy, 1).mul(like.x.mul(found.z)))
-        airs.addAssign(vec2(found.w, 1).mul(like.y))
-      }
-      const air = airs.x.div(airs.y).toConst() as Float
-      // Some where none of them sees a cloud.
-      const all = clouds.add(vec3(air, air, 1).mul(1e-6)).toConst() as Vec3
-      return vec4(all.xy.div(all.z), air, 1)
-    })()
+    opacity = opacity.div(TAPS.length).toConst()
+    return { opacity, distance, normal: normal.normalize().toConst(), known }
   }
 
   /** Mean of 1/(r² + s²) over the stem, for a place in clouds, in w, and of that times the direction to the stem [1/m²]. */
   #lineLight(place: Vec3): Vec4 {
     const sum = vec4(0).toVar() as Variable<Vec4>
-    loop('flashLine', STEM_POINTS - 1, index => {
-      const [from, to] = [index, index.add(int(1))].map(
+    loop('flashLine', 2, index => {
+      // The stem is nearly straight.
+      const first = index.mul(int(2)).toConst() as Int
+      const [from, to] = [first, first.add(int(2))].map(
         i => this.#stemArray.element(i).xyz.sub(place).toConst() as Vec3
       )
       const light = meanInverseSquare(from, to, float(CLOUD_SOFTNESS))
       sum.addAssign(vec4(from.add(to).normalize(), 1).mul(light))
     })
-    return sum.div(STEM_POINTS - 1).toConst()
+    return sum.div(2).toConst()
   }
 
   /** Light that the air on a ray scatters once, without direction, for `STORED_POWER` [cd/m²]: from three points of the stem. */
@@ -290,9 +262,13 @@ export class LightningPasses {
     const result = color.toVar() as Variable<Vec3>
     If(this.power.greaterThan(0), () => {
       const here = uv() as unknown as Vec2
-      const { xyz: light } = this.#light.sample(here).level(0).toConst()
-      const glow = mix(light.xy, vec2(light.z), transmittance).add(this.#bolt.sample(here))
-      result.addAssign(channelColor(glow.toConst()).mul(this.power.mul(1 / STORED_POWER)))
+      const light = this.#light.sample(here).level(0).toConst() as Vec4
+      const glow = mix(light.xyz, vec3(light.w), transmittance).toVar() as Variable<Vec3>
+      If(this.#bolt.isNear(here), () => {
+        glow.addAssign(channelTint(this.#bolt.sample(here)))
+      })
+      const scale = this.power.mul(1 / STORED_POWER)
+      result.addAssign(glow.mul(vec3(...CHANNEL_COLOR)).mul(scale))
     })
     return result
   }
@@ -326,18 +302,14 @@ export class LightningPasses {
       .setScalar((edge - 1) / 2)
       .sub(jitter.value)
       .divide(blocks)
-    this.#glowTarget.setSize(marched.x, marched.y)
     const { x, y } = size.value
     this.#target.setSize(Math.ceil(x / LIGHT_PIXEL), Math.ceil(y / LIGHT_PIXEL))
-    this.#glowPass.render(renderer, this.#glowTarget)
     this.#pass.render(renderer, this.#target)
     this.#bolt.render(renderer, view, _offset, channel, power.branches / power.all)
   }
 
   /** Frees render targets and passes. */
   dispose(): void {
-    const targets = [this.#glowTarget, this.#target]
-    const passes = [this.#glowPass, this.#pass, this.#bolt, this.#density]
-    for (const owned of [...targets, ...passes]) owned.dispose()
+    for (const owned of [this.#target, this.#pass, this.#bolt, this.#density]) owned.dispose()
   }
 }

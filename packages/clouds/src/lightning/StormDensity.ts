@@ -1,6 +1,6 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
 import type { RenderTarget, Vector3 } from 'three'
-import { Fn, If, float, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import { Fn, If, float, mix, smoothstep, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { select } from '../select'
 import type { CloudField } from '../density/CloudField'
@@ -46,6 +46,9 @@ const THINNEST = 3
 /** Scaled extinction below which there is no cloud [1/m]. */
 const CLEAR = 3e-4
 
+/** Clear ways between parts of one cloud, and between clouds [m]. Smaller: bright islands with outlines on towers (*Storm at night*). */
+const GAP = [150, 850] as const
+
 /** Corners of a tetrahedron half a cell about a place [cells]. */
 const CORNERS = [
   [0.5, 0.5, 0.5],
@@ -72,10 +75,11 @@ const nodeOf = (target: RenderTarget): LevelTexture<Vec2> =>
  * of depth τ passes 1/(1 + τ/`OPEN`), as a slab does.
  */
 export class StormDensity {
-  readonly #target = boxTarget('Density')
+  /** Density of the cells, until light has been found from it; then that which comes out of them. */
+  readonly #target = boxTarget('Box')
   readonly #openTarget = tableTarget('Welkin.LightningWaysOut', 1, 1)
   readonly #lightTarget = boxTarget('Light')
-  readonly #density = nodeOf(this.#target)
+  readonly #box = nodeOf(this.#target)
   readonly #open = nodeOf(this.#openTarget)
   readonly #light = nodeOf(this.#lightTarget)
   readonly #passes: readonly (readonly [FragmentPass, RenderTarget])[]
@@ -91,7 +95,8 @@ export class StormDensity {
     this.#passes = [
       [new FragmentPass('Welkin.LightningDensity', this.#draw()), this.#target],
       [new FragmentPass('Welkin.LightningWaysOut', this.#waysOut()), this.#openTarget],
-      [new FragmentPass('Welkin.LightningLight', this.#lit()), this.#lightTarget]
+      [new FragmentPass('Welkin.LightningLight', this.#lit()), this.#lightTarget],
+      [new FragmentPass('Welkin.LightningOut', this.#smoothed()), this.#target]
     ]
   }
 
@@ -170,8 +175,8 @@ export class StormDensity {
   }
 
   /**
-   * Light that got out of the clouds before that of a cell, or would get out of the flash's own ball, over what an even ball would send there; depth of its
-   * own cloud; and 1 if that is another than the flash's.
+   * Light that comes out at a cell, over what an even ball would send there, and from 0 to 1 how much its cloud is another than the flash's: clefts within a
+   * cloud part nothing.
    */
   #lit(): Vec4 {
     return Fn(() => {
@@ -181,23 +186,41 @@ export class StormDensity {
         .mul(6 / SAMPLES)
         .toConst() as Float
       const open = this.#open.sample(vec2(0.5)).level(0).x.div(OPEN).toConst()
-      /** Depth of the present cloud; light that got out of those before it, if there are any. */
+      /** Depth of all clouds and of the present one; light that got out of those before it; way in clear air. */
+      const whole = float(0).toVar() as Variable<Float>
       const depth = float(0).toVar() as Variable<Float>
-      const out = float(0).toVar() as Variable<Float>
-      const before = (): Float => select(out.greaterThan(0), out, open)
+      const out = open.toVar() as Variable<Float>
+      const gap = float(0).toVar() as Variable<Float>
       loop('lightStep', SAMPLES, index => {
         // Finest at both ends: what is before the place makes its form.
         const even = float(index).add(0.5).div(SAMPLES).toConst() as Float
         const part = even.mul(even).mul(even.mul(-2).add(3))
         const density = this.#densityAt(this.#source.add(way.mul(part)).toConst()).toConst()
+        const step = even.mul(even.oneMinus()).mul(length).toConst()
         If(density.lessThan(CLEAR), () => {
-          out.assign(before().mul(passed(depth)).min(THINNEST))
+          out.assign(out.mul(passed(depth)).min(THINNEST))
           depth.assign(0)
+          gap.addAssign(step)
         }).Else(() => {
-          depth.addAssign(density.mul(even).mul(even.oneMinus()).mul(length))
+          depth.addAssign(density.mul(step))
+          whole.addAssign(density.mul(step))
         })
       })
-      return vec4(before(), depth, select(out.greaterThan(0), 1, 0), 1)
+      const other = smoothstep(...GAP, gap).toConst() as Float
+      const light = mix(open.mul(passed(whole)), out.mul(passed(depth)), other)
+      return vec4(light.min(THINNEST), other, 0, 1)
+    })()
+  }
+
+  /** `#lit`, with that of the cells around. */
+  #smoothed(): Vec4 {
+    return Fn(() => {
+      const cell = this.#cell()
+      // Tents at the corners of a tetrahedron: smooth, as by a B-spline; one alone shows its cells.
+      const light = CORNERS.map(corner => this.#read(this.#light, cell, corner))
+        .reduce((sum, each) => sum.add(each))
+        .div(CORNERS.length)
+      return vec4(light, 1)
     })()
   }
 
@@ -237,11 +260,11 @@ export class StormDensity {
   /** Scaled extinction at a place in the flash's frame [1/m]. */
   #densityAt(place: Vec3): Float {
     const up = this.#heightOf(place)
-    return select(up.clamp(0, 1).equal(up), this.#read(this.#density, place).x.div(1000), 0)
+    return select(up.clamp(0, 1).equal(up), this.#read(this.#box, place).x.div(1000), 0)
   }
 
   /**
-   * Light that comes out at a place, over what an even ball would send there, and 1 if it comes from out of another cloud, else 0. To be called inside of
+   * Light that comes out at a place, over what an even ball would send there, and from 0 to 1 how much it comes out of another cloud. To be called inside of
    * a shader function.
    *
    * @param offset - Displacement from the camera, in the mapped space [m].
@@ -250,12 +273,7 @@ export class StormDensity {
     const shifted = offset.sub(this.#place).toConst() as Vec3
     const [east, north, up] = this.#axes.map(axis => shifted.dot(axis))
     const place = vec3(east, north, up).toConst() as Vec3
-    // Tents at the corners of a tetrahedron: smooth, as by a B-spline; one alone shows its cells.
-    const light = CORNERS.map(corner => this.#read(this.#light, place, corner))
-      .reduce((sum, each) => sum.add(each))
-      .div(CORNERS.length)
-      .toConst() as Vec3
-    return vec2(light.x.mul(passed(light.y)).min(THINNEST), light.z)
+    return this.#read(this.#box, place).xy
   }
 
   /** Follows the camera. @param offset - The flash's place from the camera, in the mapped space [m]. */
@@ -283,6 +301,6 @@ export class StormDensity {
 
   /** Frees its textures. */
   dispose(): void {
-    for (const owned of this.#passes.flat()) owned.dispose()
+    for (const owned of new Set(this.#passes.flat())) owned.dispose()
   }
 }

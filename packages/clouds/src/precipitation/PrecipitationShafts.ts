@@ -176,13 +176,8 @@ export class PrecipitationShafts {
 
   /** Extinction of light by what falls from a layer, without what is only diffracted [1/m]. To be called inside of a shader function. */
   extinctionAt(field: CloudField, layer: LayerNodes, sample: CloudSample): Float {
-    const { rate, snow, hail } = fallenFrom(
-      field,
-      undefined,
-      layer,
-      this.fallOf(layer.index),
-      sample
-    )
+    const falls = this.fallOf(layer.index)
+    const { rate, snow, hail } = fallenFrom(field, undefined, layer, falls, sample)
     return fallExtinctions(rate, snow, hail).x.mul(1 - DIFFRACTED)
   }
 
@@ -198,7 +193,7 @@ export class PrecipitationShafts {
       .dot(
         vec3(place)
           .sub(vec3(0, 1, 2))
-          .clamp(0, 1)
+          .clamp()
       )
       .toConst() as Float
     return { share, over, under: parts.dot(vec3(1)).sub(over).toConst() }

@@ -6,10 +6,10 @@ import type { Spectrum } from '../../parameters/AtmosphereParameters'
  * Earth's parameters which leaves white as it is and is least otherwise.
  */
 const SPECTRA: readonly Readonly<Triple>[] = [
-  [0.2503116, -0.20252026, 0.95220866],
-  [-0.26351697, 0.98885582, 0.27466115],
-  [0.38496951, 0.7942436, -0.17921311],
-  [0.63003552, 0.05919628, 0.3107682]
+  [0.2503116, -0.2025203, 0.9522087],
+  [-0.263517, 0.9888558, 0.2746612],
+  [0.3849695, 0.7942436, -0.1792131],
+  [0.6300355, 0.0591963, 0.3107682]
 ]
 
 /** Factors at the four wavelengths by which sunlight has a colour, given in linear sRGB over that of sunlight. */

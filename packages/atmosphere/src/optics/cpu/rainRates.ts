@@ -1,6 +1,6 @@
 import type { PhaseGrid } from './phaseGrid'
 
-/** Rates of rain whose phase functions are stored [mm/h]. */
+/** Rates of rain whose phase functions are stored, a decade apart [mm/h]. */
 export const RAIN_RATES: readonly number[] = [0.5, 5, 50]
 
 /** Grid of stored rain: bows are on the side away from the light. */

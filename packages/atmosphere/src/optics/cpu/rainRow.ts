@@ -1,3 +1,4 @@
+import { MathUtils } from 'three'
 import { rainData } from '../rainData'
 import { decodePhases } from './decodePhases'
 import { phaseRow, type PhaseRow } from './phaseRow'
@@ -8,13 +9,11 @@ export function rainRow(rate: number): PhaseRow {
   const numbers = 3 * (rainGrid.forward + rainGrid.backward)
   const stored = decodePhases(rainData, numbers / 3, RAIN_COLOR_STEP)
   const last = RAIN_RATES.length - 1
-  const [least, most] = [RAIN_RATES[0], RAIN_RATES[last]]
-  const within = Math.min(Math.max(rate, least), most)
-  const place = (Math.log(within / least) / Math.log(most / least)) * last
+  const place = MathUtils.clamp(Math.log10(rate / RAIN_RATES[0]), 0, last)
   const row = Math.min(Math.floor(place), last - 1)
-  const colors = Array.from({ length: numbers }, (_, i) => {
-    const [a, b] = [row, row + 1].map(n => stored[numbers * n + i])
-    return a + (b - a) * (place - row)
-  })
+  const from = numbers * row
+  const colors = stored
+    .slice(from, from + numbers)
+    .map((value, i) => MathUtils.lerp(value, stored[from + numbers + i], place - row))
   return phaseRow(colors, rainGrid)
 }
