@@ -7,6 +7,14 @@ import { parseArgs } from 'node:util'
 import { ensureInstalled, npmCommand, rootFolder } from './install.mjs'
 import { watchProcessorTime } from './processorTime.mjs'
 
+/** Unit tests that take a quarter of the time of all: they solve the light of the air, or trace shaders of all features. */
+const slowUnitTests = [
+  'e2e/test/textures.test.ts',
+  'packages/atmosphere/test/parameters/planets.test.ts',
+  'packages/atmosphere/test/queries/illuminance.test.ts',
+  'packages/clouds/test/noise/noise.test.ts'
+]
+
 /**
  * Steps in their order. Those with a `lane` come first: lanes run side by side, the steps of one in turn, and the output of a
  * step comes when it ends. Most keep one core busy; that of movements mostly waits. Steps without one have browsers for all
@@ -21,6 +29,15 @@ const steps = [
   // Installs what the builds have made.
   { id: 'consumer', title: 'Consumer install', script: 'test:consumer', lane: 'packages' },
   { id: 'unit', title: 'Unit tests', script: 'test:unit', reporter: 'vitest', lane: 'numbers' },
+  {
+    id: 'quick',
+    title: 'Quick unit tests',
+    script: 'test:unit',
+    args: slowUnitTests.flatMap(file => ['--exclude', file]),
+    reporter: 'vitest',
+    lane: 'numbers',
+    onDemand: true
+  },
   {
     id: 'validate',
     title: 'Reference data',
