@@ -11,12 +11,14 @@ export const stormPlaces = {
   jitter: 0.8,
   /** Extra distance of a storm whose point lies at a height z over the surface: its square is `away` z⁶ [cells]. Smaller: walls between storms. */
   away: 7.72,
+  /** Lead of the nearest storm over the next below which both grow together [cells]. 0: creases where anvils meet; greater: sheets instead of storms. */
+  merge: 0.25,
   /**
    * Scale [cells] and exponent [–] of the rank e^(−(d/scale)^power) of a distance d from the nearest storm, as counted over the planet.
    * Wrong: more or fewer storms than asked for.
    */
-  scale: 0.5068,
-  power: 2.7,
+  scale: 0.49,
+  power: 2.74,
   /** Least and greatest rank at a storm's rim: storms reach from 0 to 0.8 cells. */
   ranks: [0.03, 0.9999]
 } as const
@@ -59,7 +61,7 @@ export const stormShape = {
 /** Ice of storms: towers are of water up to their domes, and anvils thin out towards their rims. */
 export const stormIce = {
   /** Distances from a tower's axis between which water turns into the ice of its anvil, in radii of that anvil. 0: domes of wool. */
-  aside: [0.5, 1],
+  aside: [0.35, 0.8],
   /** Width of an anvil's thin rim, in its radii [–]. 0: its edge is a cliff (*Storm*). */
   rim: 0.6,
   /**

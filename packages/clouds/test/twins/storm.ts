@@ -39,7 +39,7 @@ interface StormGaps {
   readonly tower: Vector3
   /** Distance from the next nearest anvil of those that are searched, less that from the nearest. */
   readonly lead: number
-  /** The same of towers. */
+  /** Distance from the axis of the next nearest tower, less that from the nearest. */
   readonly towerLead: number
 }
 
@@ -133,7 +133,9 @@ export function stormAround(
   }
   const anvil = bent(found.anvil, found.lead)
   const tower = bent(found.tower, found.towerLead)
-  const cells = axisDistance(anvil, up)
+  const { merge } = stormPlaces
+  const merged = (merge / 4) * Math.max(1 - found.lead / merge, 0) ** 2
+  const cells = Math.max(axisDistance(anvil, up) - merged, 0)
   const { scale, power } = stormPlaces
   const towerDistance = axisDistance(tower, up) * stormCell(layer)
   const axis = new Vector3(...still).multiplyScalar(stormPlaces.cells).add(found.anvil)

@@ -108,7 +108,10 @@ export function stormAround(
       .sub(bent.mul(ahead.mul(perLead).clamp()))
       .toConst()
   const toAnvil = gapTo(anvil, lead)
-  const cells = squareFrom(toAnvil, zenith).sqrt().toConst() as Float
+  // Smooth minimum of the distances to the nearest and the next: anvils that meet grow together.
+  const meets = lead.div(stormPlaces.merge).oneMinus().max(0).toConst() as Float
+  const merged = meets.mul(meets).mul(stormPlaces.merge / 4)
+  const cells = squareFrom(toAnvil, zenith).sqrt().sub(merged).max(0).toConst() as Float
   const toTower = gapTo(tower, towerLead).sub(downwind).toConst() as Vec3
   return {
     distance: cells.mul(length).toConst(),
