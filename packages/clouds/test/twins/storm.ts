@@ -39,7 +39,7 @@ interface StormGaps {
   readonly tower: Vector3
   /** Distance from the next nearest anvil of those that are searched, less that from the nearest. */
   readonly lead: number
-  /** The same of towers. */
+  /** Distance from the axis of the next nearest tower, less that from the nearest. */
   readonly towerLead: number
 }
 

@@ -34,7 +34,7 @@ export interface StormGaps {
   readonly tower: Vec3
   /** Distance from the axis of the next nearest anvil, less that from the nearest. */
   readonly lead: Float
-  /** The same of towers. */
+  /** Distance from the axis of the next nearest tower, less that from the nearest. */
   readonly towerLead: Float
 }
 
