@@ -15,11 +15,14 @@ class TableImage {
 }
 
 /** Has a device take images, of which Node has none. */
-export function takeImages({ queue }: GPUDevice): void {
+export function takeImages(device: GPUDevice): void {
+  const { queue } = device
   Object.assign(globalThis, { Image: TableImage })
   queue.copyExternalImageToTexture = ({ source }, destination, size) => {
     if (!(source instanceof TableImage)) throw new Error('headless: an image must be a PNG')
     const { data, width } = source as TableImage
     queue.writeTexture(destination, data, { bytesPerRow: 4 * width }, size)
   }
+  // Each reading makes another object of it.
+  Object.defineProperty(device, 'queue', { value: queue })
 }
