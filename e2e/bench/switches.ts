@@ -76,7 +76,7 @@ const SWITCHES: readonly Switch[] = [
   { name: 'motionBlur', isTurning: true, least: 0.01 },
   { name: 'antialiasing', value: 'edges', least: 0.005 },
   { name: 'antialiasing', value: 'fxaa', least: 0.005 },
-  { name: 'antialiasing', value: 'smaa', least: 0.005 },
+  // SMAA asks for a browser's `Image`.
   { name: 'antialiasing', value: 'traa', least: 0.005 },
   { name: 'antialiasing', value: 'taau', least: 0.01 },
   { name: 'quality', value: 'low', state: { quality: 'medium' }, least: 0.01 },

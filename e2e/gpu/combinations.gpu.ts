@@ -21,7 +21,7 @@ const TOLERANCE = 8 / 2048
 /** Error with clouds, whose shadows follow the sun over some frames. */
 const CLOUD_TOLERANCE = 0.03
 /** Least part of the numbers of a set of which its parts say something. */
-const LEAST_KNOWN = 0.5
+const LEAST_KNOWN = 0.9
 /** Sets besides one with ground that are drawn with shaders of their own, too, and how much they may differ. */
 const ALONE = 2
 const OFF_TOLERANCE = 2e-3

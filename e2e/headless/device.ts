@@ -1,7 +1,6 @@
 import { WebGPURenderer, type WebGPURendererParameters } from 'three/webgpu'
 import { TimestampQuery } from 'three'
 import { create, globals } from 'webgpu'
-import { takeImages } from './images'
 
 Object.assign(globalThis, globals)
 
@@ -95,7 +94,6 @@ export class HeadlessDevice {
     // An adapter serves one device.
     const adapter = await requestAdapter(this.#gpu)
     const device = await adapter.requestDevice({ requiredFeatures: ['timestamp-query'] })
-    takeImages(device)
     const renderer = new WebGPURenderer({
       canvas: offscreenCanvas(width, height),
       antialias: false,

@@ -77,12 +77,9 @@ gpuTest(
 
     for (const [sun, lunar, name, density, thickness] of [
       [5, -30, 'height fog', 0.05, 0],
-      [20, -30, 'height fog', 0.05, 0],
       [60, -30, 'height fog', 0.05, 0],
       [-30, 40, 'height fog by moonlight', 0.05, 0],
-      [5, -30, 'distance fog', 0, 1 / 300],
-      [20, -30, 'distance fog', 0, 1 / 300],
-      [60, -30, 'distance fog', 0, 1 / 300]
+      [20, -30, 'distance fog', 0, 1 / 300]
     ] as const) {
       setLights(sun, lunar)
       mist.density = density
