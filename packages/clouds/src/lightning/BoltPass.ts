@@ -96,8 +96,6 @@ export class BoltPass {
   /** The channel's frame to view space [world units/m], and its place there. */
   readonly #toView = matrix3()
   readonly #placeView = vector3()
-  /** The channel's place in its own frame, from the camera [m]. */
-  readonly #place = vector3()
   readonly #projection = matrix4()
   /** Box around the channel in the picture: its least and greatest place, y down. The target's scissor has it in pixels. */
   readonly #box = vector4()
@@ -174,10 +172,10 @@ export class BoltPass {
       const across = corner.y.mul(HALF_WIDTH).toConst() as Float
       const pixel = start.add(along.mul(at)).add(vec2(along.y.negate(), along.x).mul(across))
       const end = mix(from.xyz, to.xyz, corner.x).toConst() as Vec3
-      const distance = end.add(this.#place).length().toConst() as Float
-      const passing = passingAt(mix(start, stop, corner.x), distance)
       const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
-      const displacement = toView.mul(end).add(this.#placeView).toConst()
+      const displacement = toView.mul(end).add(this.#placeView).toConst() as Vec3
+      const distance = field.view.toMapped(displacement).length().toConst() as Float
+      const passing = passingAt(mix(start, stop, corner.x), distance)
       place.assign(vec4(at, across, length, displacement.z))
       const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
       const width = distance.mul(field.pixelAngle).mul(WIDTH * Math.sqrt(2 * Math.PI))
@@ -225,7 +223,6 @@ export class BoltPass {
     branches: number
   ): void {
     const [east, north, up] = axes
-    this.#place.value.set(offset.dot(east), offset.dot(north), offset.dot(up))
     _toView.copy(viewToMapped).invert()
     this.#placeView.value.copy(offset).applyMatrix3(_toView)
     const { x, y, z } = east

@@ -1,6 +1,6 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import type { RenderTarget, Vector3 } from 'three'
-import { Fn, If, float, mix, smoothstep, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import { Vector4, type RenderTarget, type Vector3 } from 'three'
+import { Fn, If, float, int, mix, smoothstep, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { select } from '../select'
 import type { CloudField } from '../density/CloudField'
@@ -10,6 +10,7 @@ import { sampleLayer } from '../density/tsl/sampleLayer'
 import { backgroundAt } from '../density/tsl/sampler'
 import {
   loop,
+  vec4Array,
   type Float,
   type LevelTexture,
   type Variable,
@@ -18,7 +19,8 @@ import {
   type Vec4
 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
-import type { PlacedChannel, StormColumn } from './channel'
+import { STEM_POINTS, type PlacedChannel, type StormColumn } from './channel'
+import { meanInverseSquare } from './tsl/lineLight'
 
 /** Cells along the ground and upwards; slices lie in rows of tiles. */
 const SIZE = 96
@@ -45,6 +47,12 @@ export const OPEN = 4
 const THINNEST = 3
 /** Scaled extinction below which there is no cloud [1/m]. */
 const CLEAR = 3e-4
+
+/**
+ * Depth in cloud from which its light comes: a few scaled mean free paths; the line's light is as soft [m]. Smaller: a white core where a
+ * channel leaves its cloud (*Storm at night*).
+ */
+export const CLOUD_SOFTNESS = 250
 
 /** Clear ways between parts of one cloud, and between clouds [m]. Smaller: bright islands with outlines on towers (*Storm at night*). */
 const GAP = [150, 850] as const
@@ -88,8 +96,11 @@ export class StormDensity {
   readonly #axes = [vector3(), vector3(), vector3()] as const
   readonly #base = number()
   readonly #thickness = number(1)
-  /** Start of light, in the flash's frame [m]. */
+  /** Start of light, in the flash's frame [m], and from the camera, in the mapped space [m]; points of the stem, in the flash's frame [m]. */
   readonly #source = vector3()
+  readonly source = vector3()
+  readonly #stem: readonly Vector4[] = Array.from({ length: STEM_POINTS }, () => new Vector4())
+  readonly #stemArray = vec4Array(this.#stem as Vector4[])
 
   constructor(readonly field: CloudField) {
     this.#passes = [
@@ -212,7 +223,7 @@ export class StormDensity {
     })()
   }
 
-  /** `#lit`, with that of the cells around. */
+  /** `#lit`, with that of the cells around, times light of the line over that of its middle. */
   #smoothed(): Vec4 {
     return Fn(() => {
       const cell = this.#cell()
@@ -220,7 +231,25 @@ export class StormDensity {
       const light = CORNERS.map(corner => this.#read(this.#light, cell, corner))
         .reduce((sum, each) => sum.add(each))
         .div(CORNERS.length)
-      return vec4(light, 1)
+        .toConst() as Vec3
+      const line = float(0).toVar() as Variable<Float>
+      loop('flashLine', STEM_POINTS - 1, index => {
+        const [from, to] = [index, index.add(int(1))].map(
+          i => this.#stemArray.element(i).xyz.sub(cell).toConst() as Vec3
+        )
+        line.addAssign(meanInverseSquare(from, to, float(CLOUD_SOFTNESS)))
+      })
+      const way = cell.sub(this.#source).toConst() as Vec3
+      const square = way.dot(way).add(CLOUD_SOFTNESS ** 2)
+      return vec4(
+        light.x
+          .mul(line)
+          .mul(square)
+          .div(STEM_POINTS - 1),
+        light.y,
+        0,
+        1
+      )
     })()
   }
 
@@ -264,7 +293,7 @@ export class StormDensity {
   }
 
   /**
-   * Light that comes out at a place, over what an even ball would send there, and from 0 to 1 how much it comes out of another cloud. To be called inside of
+   * Light that comes out at a place, over what an even ball about the light's start would send there, and from 0 to 1 how much it comes out of another cloud. To be called inside of
    * a shader function.
    *
    * @param offset - Displacement from the camera, in the mapped space [m].
@@ -279,6 +308,10 @@ export class StormDensity {
   /** Follows the camera. @param offset - The flash's place from the camera, in the mapped space [m]. */
   update(offset: Vector3): void {
     this.#place.value.copy(offset)
+    const source = this.source.value.copy(offset)
+    this.#source.value.toArray().forEach((value, i) => {
+      source.addScaledVector(this.#axes[i].value, value)
+    })
   }
 
   /** Draws the box around a flash, before any light of it; the field is up to date. */
@@ -288,14 +321,15 @@ export class StormDensity {
     { axes, stem }: PlacedChannel,
     { base, top }: StormColumn
   ): void {
-    this.update(offset)
     axes.forEach((axis, i) => this.#axes[i].value.copy(axis))
+    stem.forEach((point, i) => this.#stem[i].set(...point, 0))
     this.#base.value = base
     this.#thickness.value = top - base
     // Where most of it is in the cloud.
     const inside = stem.filter(([, , z]) => z > base)
     const middle = inside[Math.floor(inside.length / 2)] ?? stem[0]
     this.#source.value.set(...(middle as [number, number, number]))
+    this.update(offset)
     for (const [pass, target] of this.#passes) pass.render(renderer, target)
   }
 
