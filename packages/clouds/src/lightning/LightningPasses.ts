@@ -21,7 +21,8 @@ import {
 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
-import { FARTHEST, unpack } from '../temporal/tsl/packing'
+import { CORNERS } from '../temporal/tsl/cells'
+import { unpack } from '../temporal/tsl/packing'
 import { groundDistance } from '../march/tsl/layerBoundaries'
 import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
 import { select } from '../select'
@@ -73,7 +74,7 @@ const LIKE = 0.03
 const OPAQUE = 0.999
 
 /** Edge of a pixel of the light, in the picture's. Greater: heads with blurred outlines. */
-const LIGHT_PIXEL = 6
+const LIGHT_PIXEL = 7
 
 const _offset = new Vector3()
 
@@ -85,6 +86,8 @@ export class LightningPasses {
   /** Scale and offset from places in the picture to those among marched pixels: quotients of uniforms cost each pixel a division. */
   readonly #scale = vector2()
   readonly #offset = vector2()
+  /** Size of two pixels of the light, over the picture's. */
+  readonly #lightPixel = vector2()
   /** Points of the stem from the camera, in the mapped space [m], and scattering by air there [1/m]. */
   readonly #stem: readonly Vector4[] = Array.from({ length: STEM_POINTS }, () => new Vector4())
   readonly #stemArray = vec4Array(this.#stem as Vector4[])
@@ -120,15 +123,24 @@ export class LightningPasses {
       const here = uv() as unknown as Vec2
       const ray = viewRayAt(viewRays, here)
       const { direction, directionView } = ray
-      const { opacity, distance, normal, known, beside } = this.#faceAt(here, direction)
+      const { opacity, distance, normal, known } = this.#faceAt(here, direction)
       const air = vec2(0).toVar() as Variable<Vec2>
       If(opacity.lessThan(OPAQUE), () => {
         const cosView = direction.dot(field.view.up).clamp(-1, 1).toConst() as Float
         const ground = groundDistance(field, cosView).min(LONGEST_HAZE).toConst() as Float
         air.assign(vec2(this.#hazeLight(direction, ground)))
+        const end = viewRayEnd(viewRays, here, ray).toVar() as Variable<Float>
         // Before the sky, that of what stands beside the pixel.
-        const drawn = viewRayEnd(viewRays, here, ray)
-        const end = select(drawn.lessThan(ground), drawn, beside).toConst() as Float
+        If(end.lessThan(ground).not(), () => {
+          const beside = CORNERS.map(corner => {
+            const at = vec2(...corner)
+              .sub(0.5)
+              .mul(this.#lightPixel)
+              .add(here)
+            return passes.seen.ray.sample(at).level(0).y as Float
+          }).reduce((a, b) => a.min(b))
+          end.assign(beside.exp2())
+        })
         If(end.lessThan(ground), () => {
           air.y.assign(this.#hazeLight(direction, end))
         })
@@ -158,8 +170,7 @@ export class LightningPasses {
   }
 
   /**
-   * Face of a pixel's clouds: their opacity around, its distance [m] and normal, and from 0 to 1 how much of a face they have; and the least distance at
-   * which something was drawn around [m]. A plane through those of nine marched pixels that are as far as the pixel's own, by history: single ones
+   * Face of a pixel's clouds: their opacity around, its distance [m] and normal, and from 0 to 1 how much of a face they have. A plane through those of nine marched pixels that are as far as the pixel's own, by history: single ones
    * have the march's grain. To be called inside of a shader function, outside of branches.
    *
    * @param here - Place in the picture, y down.
@@ -167,7 +178,7 @@ export class LightningPasses {
   #faceAt(
     here: Vec2,
     direction: Vec3
-  ): { opacity: Float; distance: Float; normal: Vec3; known: Float; beside: Float } {
+  ): { opacity: Float; distance: Float; normal: Vec3; known: Float } {
     const { viewRays, accumulated, seen } = this.#clouds.passes
     const { marchedSize, block, size } = viewRays.frame
     const own = unpack(accumulated.distances.sample(here).level(0)).x
@@ -175,7 +186,6 @@ export class LightningPasses {
     const nearest = place.add(0.5).floor().toConst() as Vec2
     // Where the pixel sees none, all around are as unlike.
     const reference = own.min(LONGEST_OCTAVE).exp2().toConst() as Float
-    const beside = float(FARTHEST).toVar() as Variable<Float>
     // Sums of opacities by place in the picture; of weights, of these by place, depth and square of the place, of distances from the reference, and of
     // these by place.
     const opacity = float(0).toVar() as Variable<Float>
@@ -194,7 +204,6 @@ export class LightningPasses {
       const shares = seen.shares.sample(at).level(0).toConst() as Vec4
       const seenShare = shares.dot(vec4(1)).toConst() as Float
       const middle = shares.dot(distances).div(seenShare.max(1e-6)).toConst() as Float
-      beside.assign(beside.min(seen.ray.sample(at).level(0).y))
       // Smooth from pixel to pixel: a weight is 0 where its place among the nine changes.
       const near = vec2(1.5).sub(shift.abs()).clamp(0, 1).toConst() as Vec2
       const share = near.x.mul(near.y).mul(seenShare).toConst() as Float
@@ -229,7 +238,7 @@ export class LightningPasses {
     }
     const known = width.div(width.add(blurred)).toConst() as Float
     const face = { distance, normal: normal.normalize().toConst() as Vec3, known }
-    return { ...face, opacity: opacity.div(4), beside: beside.exp2() }
+    return { ...face, opacity: opacity.div(4) }
   }
 
   /** Light that the air on a ray scatters once, without direction, for `STORED_POWER` [cd/m²]: from three points of the stem. */
@@ -303,6 +312,7 @@ export class LightningPasses {
       .divide(blocks)
     const { x, y } = size.value
     this.#target.setSize(Math.ceil(x / LIGHT_PIXEL), Math.ceil(y / LIGHT_PIXEL))
+    this.#lightPixel.value.set(2 / this.#target.width, 2 / this.#target.height)
     this.#pass.render(renderer, this.#target)
     this.#bolt.render(renderer, view, _offset, channel, power.branches / power.all)
   }

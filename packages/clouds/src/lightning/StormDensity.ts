@@ -57,14 +57,6 @@ export const CLOUD_SOFTNESS = 250
 /** Clear ways between parts of one cloud, and between clouds [m]. Smaller: bright islands with outlines on towers (*Storm at night*). */
 const GAP = [150, 850] as const
 
-/** Corners of a tetrahedron half a cell about a place [cells]. */
-const CORNERS = [
-  [0.5, 0.5, 0.5],
-  [0.5, -0.5, -0.5],
-  [-0.5, 0.5, -0.5],
-  [-0.5, -0.5, 0.5]
-] as const
-
 /** Depth passed on a way out of a cloud, as the light that comes out, over `OPEN`. */
 const passed = (depth: Float): Float => float(OPEN).div(depth.add(OPEN))
 
@@ -83,7 +75,6 @@ const nodeOf = (target: RenderTarget): LevelTexture<Vec2> =>
  * of depth τ passes 1/(1 + τ/`OPEN`), as a slab does.
  */
 export class StormDensity {
-  /** Density of the cells, until light has been found from it; then that which comes out of them. */
   readonly #target = boxTarget('Box')
   readonly #openTarget = tableTarget('Welkin.LightningWaysOut', 1, 1)
   readonly #lightTarget = boxTarget('Light')
@@ -106,8 +97,7 @@ export class StormDensity {
     this.#passes = [
       [new FragmentPass('Welkin.LightningDensity', this.#draw()), this.#target],
       [new FragmentPass('Welkin.LightningWaysOut', this.#waysOut()), this.#openTarget],
-      [new FragmentPass('Welkin.LightningLight', this.#lit()), this.#lightTarget],
-      [new FragmentPass('Welkin.LightningOut', this.#smoothed()), this.#target]
+      [new FragmentPass('Welkin.LightningLight', this.#lit()), this.#lightTarget]
     ]
   }
 
@@ -186,12 +176,13 @@ export class StormDensity {
   }
 
   /**
-   * Light that comes out at a cell, over what an even ball would send there, and from 0 to 1 how much its cloud is another than the flash's: clefts within a
-   * cloud part nothing.
+   * Light that comes out at a cell, over what an even ball about the light's start would send there, and from 0 to 1 how much its cloud is another than the
+   * flash's: clefts within a cloud part nothing.
    */
   #lit(): Vec4 {
     return Fn(() => {
-      const way = this.#cell().sub(this.#source).toConst() as Vec3
+      const cell = this.#cell()
+      const way = cell.sub(this.#source).toConst() as Vec3
       const length = way
         .length()
         .mul(6 / SAMPLES)
@@ -219,19 +210,6 @@ export class StormDensity {
       })
       const other = smoothstep(...GAP, gap).toConst() as Float
       const light = mix(open.mul(passed(whole)), out.mul(passed(depth)), other)
-      return vec4(light.min(THINNEST), other, 0, 1)
-    })()
-  }
-
-  /** `#lit`, with that of the cells around, times light of the line over that of its middle. */
-  #smoothed(): Vec4 {
-    return Fn(() => {
-      const cell = this.#cell()
-      // Tents at the corners of a tetrahedron: smooth, as by a B-spline; one alone shows its cells.
-      const light = CORNERS.map(corner => this.#read(this.#light, cell, corner))
-        .reduce((sum, each) => sum.add(each))
-        .div(CORNERS.length)
-        .toConst() as Vec3
       const line = float(0).toVar() as Variable<Float>
       loop('flashLine', STEM_POINTS - 1, index => {
         const [from, to] = [index, index.add(int(1))].map(
@@ -239,36 +217,24 @@ export class StormDensity {
         )
         line.addAssign(meanInverseSquare(from, to, float(CLOUD_SOFTNESS)))
       })
-      const way = cell.sub(this.#source).toConst() as Vec3
       const square = way.dot(way).add(CLOUD_SOFTNESS ** 2)
-      return vec4(
-        light.x
-          .mul(line)
-          .mul(square)
-          .div(STEM_POINTS - 1),
-        light.y,
-        0,
-        1
-      )
+      const gain = line.mul(square).div(STEM_POINTS - 1)
+      return vec4(light.min(THINNEST).mul(gain), other, 0, 1)
     })()
   }
 
-  /** Value of a box at a place in the flash's frame, shifted by parts of a cell; out of it, that at its edge. */
-  #read(
-    box: LevelTexture<Vec2>,
-    place: Vec3,
-    shift = [0, 0, 0] as readonly [number, number, number]
-  ): Vec3 {
+  /** Value of a box at a place in the flash's frame; out of it, that at its edge. */
+  #read(box: LevelTexture<Vec2>, place: Vec3): Vec3 {
     const { x, y } = place
     const warped = vec2(x.div(x.abs().add(FINE)), y.div(y.abs().add(FINE)))
     const flat = warped
       .mul(SHRINK / 2)
-      .add(vec2(0.5 + shift[0] / SIZE, 0.5 + shift[1] / SIZE))
+      .add(0.5)
       .clamp(0.5 / SIZE, 1 - 0.5 / SIZE)
       .toConst() as Vec2
     const slice = this.#heightOf(place)
       .mul(SLICES)
-      .add(shift[2] - 0.5)
+      .sub(0.5)
       .clamp(0, SLICES - 1)
       .toConst() as Float
     const first = slice.floor().toConst() as Float
@@ -302,7 +268,7 @@ export class StormDensity {
     const shifted = offset.sub(this.#place).toConst() as Vec3
     const [east, north, up] = this.#axes.map(axis => shifted.dot(axis))
     const place = vec3(east, north, up).toConst() as Vec3
-    return this.#read(this.#box, place).xy
+    return this.#read(this.#light, place).xy
   }
 
   /** Follows the camera. @param offset - The flash's place from the camera, in the mapped space [m]. */
@@ -335,6 +301,6 @@ export class StormDensity {
 
   /** Frees its textures. */
   dispose(): void {
-    for (const owned of new Set(this.#passes.flat())) owned.dispose()
+    for (const owned of this.#passes.flat()) owned.dispose()
   }
 }
