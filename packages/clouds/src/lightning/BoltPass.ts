@@ -24,6 +24,7 @@ import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
 import { select } from '../select'
 import type { CloudsNode } from '../march/CloudsNode'
 import { isDrawnBefore } from '../march/tsl/viewRay'
+import { CORNERS } from '../temporal/tsl/cells'
 import type {
   Bool,
   Float,
@@ -63,15 +64,10 @@ function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
   const corner: number[] = []
   const index: number[] = []
   for (const [i, piece] of pieces.entries()) {
-    for (const [end, side] of [
-      [0, -1],
-      [0, 1],
-      [1, -1],
-      [1, 1]
-    ]) {
+    for (const [end, side] of CORNERS) {
       from.push(...piece.from, piece.brightness)
       to.push(...piece.to, piece.isBranch ? 1 : 0)
-      corner.push(end, side, 0)
+      corner.push(end, 2 * side - 1, 0)
     }
     index.push(...[0, 1, 2, 2, 1, 3].map(k => 4 * i + k))
   }
