@@ -137,7 +137,7 @@ export class LightningPasses {
               .sub(0.5)
               .mul(this.#lightPixel)
               .add(here)
-            return passes.seen.ray.sample(at).level(0).y as Float
+            return passes.seen.ray.sample(at).level(0).y
           }).reduce((a, b) => a.min(b))
           end.assign(beside.exp2())
         })
