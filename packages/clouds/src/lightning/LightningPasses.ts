@@ -63,7 +63,6 @@ const LEAST_OPACITY = 1e-3
  * Light on faces of clouds that a flash lights from outside: of those turned away, and of thin ones [–]. 0: black (*Storm at night*).
  */
 const TURNED_AWAY = 0.3
-const UNFACED = 1 / 3
 
 /** Share of the depth that one looks into clouds in which form is lost. Greater: heads without form; smaller: grain (*Storm at night*). */
 const BLURRED = 0.25
@@ -154,10 +153,11 @@ export class LightningPasses {
         const turned = normal.dot(way).mul(square.inverseSqrt()).add(1).div(2).toConst() as Float
         const outside = turned
           .mul(turned)
+          .mul(known)
           .mul(1 - TURNED_AWAY)
           .add(TURNED_AWAY)
-        const inside = limbDarkening(normal.dot(direction).negate())
-        const face = mix(mix(1, UNFACED, out.y), mix(inside, outside, out.y), known)
+        const inside = mix(1, limbDarkening(normal.dot(direction).negate()), known)
+        const face = mix(inside, outside, out.y)
         const lit = out.x.mul(face).div(square.add(CLOUD_SOFTNESS ** 2))
         const displacement = directionView.mul(distance).toConst()
         const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
