@@ -4,7 +4,7 @@ import {
   tableTarget,
   type AtmosphereView
 } from '@welkin/atmosphere'
-import { Vector3, Vector4 } from 'three'
+import { MathUtils, Vector3, Vector4 } from 'three'
 import {
   Fn,
   If,
@@ -72,7 +72,8 @@ const LIKE = 0.03
 /** Opacity around a pixel from which nothing of the air behind its clouds is seen. */
 const OPAQUE = 0.999
 
-/** Edge of a pixel of the light, in the picture's. Greater: heads with blurred outlines. */
+/** Pixels of the light in small pictures, and the greatest edge of one, in the picture's. Fewer and greater: heads with blurred outlines. */
+const LIGHT_PIXELS = 42_000
 const LIGHT_PIXEL = 7
 
 const _offset = new Vector3()
@@ -311,7 +312,8 @@ export class LightningPasses {
       .sub(jitter.value)
       .divide(blocks)
     const { x, y } = size.value
-    this.#target.setSize(Math.ceil(x / LIGHT_PIXEL), Math.ceil(y / LIGHT_PIXEL))
+    const pixel = MathUtils.clamp(Math.sqrt((x * y) / LIGHT_PIXELS), 1, LIGHT_PIXEL)
+    this.#target.setSize(Math.ceil(x / pixel), Math.ceil(y / pixel))
     this.#lightPixel.value.set(2 / this.#target.width, 2 / this.#target.height)
     this.#pass.render(renderer, this.#target)
     this.#bolt.render(renderer, view, _offset, channel, power.branches / power.all)
