@@ -23,3 +23,11 @@ it('finds fault with pictures that are too bright, too dark or clipped', () => {
   expect(fault(0.01, 0, 0.005)).toBe('its mean is 0.010, not 0.04 to 0.35')
   expect(fault(NaN, 0, 3000)).toBe('its mean is NaN, not 0.2 to 0.5')
 })
+
+it('lets the rest be bright where a dark part is exposed for, and dark where a bright one is', () => {
+  const fault = (mean: number, clipped: number, compensation: number) =>
+    toneFault({ mean, clipped }, 0.005, false, compensation)
+  expect(fault(0.1, 0.1, 1)).toBeUndefined()
+  expect(fault(0.03, 0, 1)).toBe('its mean is 0.030, not 0.04 at least')
+  expect(fault(0.03, 0, -1)).toBeUndefined()
+})

@@ -24,6 +24,7 @@ import { NodeMaterial, RendererUtils, type Renderer } from 'three/webgpu'
 import { select } from '../select'
 import type { CloudsNode } from '../march/CloudsNode'
 import { isDrawnBefore } from '../march/tsl/viewRay'
+import { CORNERS } from '../temporal/tsl/cells'
 import type {
   Bool,
   Float,
@@ -63,15 +64,10 @@ function quadsOf({ pieces }: PlacedChannel): BufferGeometry {
   const corner: number[] = []
   const index: number[] = []
   for (const [i, piece] of pieces.entries()) {
-    for (const [end, side] of [
-      [0, -1],
-      [0, 1],
-      [1, -1],
-      [1, 1]
-    ]) {
+    for (const [end, side] of CORNERS) {
       from.push(...piece.from, piece.brightness)
       to.push(...piece.to, piece.isBranch ? 1 : 0)
-      corner.push(end, side, 0)
+      corner.push(end, 2 * side - 1, 0)
     }
     index.push(...[0, 1, 2, 2, 1, 3].map(k => 4 * i + k))
   }
@@ -96,8 +92,6 @@ export class BoltPass {
   /** The channel's frame to view space [world units/m], and its place there. */
   readonly #toView = matrix3()
   readonly #placeView = vector3()
-  /** The channel's place in its own frame, from the camera [m]. */
-  readonly #place = vector3()
   readonly #projection = matrix4()
   /** Box around the channel in the picture: its least and greatest place, y down. The target's scissor has it in pixels. */
   readonly #box = vector4()
@@ -137,20 +131,6 @@ export class BoltPass {
     const place = varying(vec4(0)) as unknown as Variable<Vec4>
     /** Luminance of its middle in red and blue. */
     const light = varying(vec2(0)) as unknown as Variable<Vec2>
-    /** Share of light that clouds let through from a distance, at a place in pixels from the middle. */
-    const passingAt = (pixel: Vec2, distance: Float): Float => {
-      const at = pixel.div(frame.size).mul(vec2(1, -1)).add(0.5).clamp(0, 1).toConst() as Vec2
-      const distances = seen.distances.sample(at).level(0)
-      const before = vec4(distance).sub(distances).div(distance.mul(HIDING)).add(1).clamp(0, 1)
-      return seen.shares
-        .sample(at)
-        .level(0)
-        .dot(before)
-        .oneMinus()
-        .sub(LEAST_PASSING)
-        .max(0)
-        .div(1 - LEAST_PASSING)
-    }
     const material = new NodeMaterial()
     Object.assign(material, {
       name: 'Welkin.LightningChannel',
@@ -170,15 +150,20 @@ export class BoltPass {
       const length = line.length().toConst() as Float
       const along = line.div(length.max(1e-3)).toConst() as Vec2
       const beyond = corner.x.mul(2).sub(1).mul(BEYOND)
-      const at = length.mul(corner.x).add(beyond).toConst() as Float
+      const away = length.mul(corner.x).add(beyond).toConst() as Float
       const across = corner.y.mul(HALF_WIDTH).toConst() as Float
-      const pixel = start.add(along.mul(at)).add(vec2(along.y.negate(), along.x).mul(across))
+      const pixel = start.add(along.mul(away)).add(vec2(along.y.negate(), along.x).mul(across))
       const end = mix(from.xyz, to.xyz, corner.x).toConst() as Vec3
-      const distance = end.add(this.#place).length().toConst() as Float
-      const passing = passingAt(mix(start, stop, corner.x), distance)
       const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
-      const displacement = toView.mul(end).add(this.#placeView).toConst()
-      place.assign(vec4(at, across, length, displacement.z))
+      const displacement = toView.mul(end).add(this.#placeView).toConst() as Vec3
+      const distance = field.view.toMapped(displacement).length().toConst() as Float
+      // Light that clouds let through.
+      const at = mix(start, stop, corner.x).div(frame.size).mul(vec2(1, -1)).add(0.5).clamp()
+      const nearer = vec4(distance).sub(seen.distances.sample(at).level(0))
+      const before = nearer.div(distance.mul(HIDING)).add(1).clamp()
+      const through = seen.shares.sample(at).level(0).dot(before).oneMinus()
+      const passing = through.sub(LEAST_PASSING).max(0)
+      place.assign(vec4(away, across, length, displacement.z))
       const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
       const width = distance.mul(field.pixelAngle).mul(WIDTH * Math.sqrt(2 * Math.PI))
       const perMetre = mix(this.#stemLight, this.#branchLight, to.w).mul(from.w)
@@ -225,7 +210,6 @@ export class BoltPass {
     branches: number
   ): void {
     const [east, north, up] = axes
-    this.#place.value.set(offset.dot(east), offset.dot(north), offset.dot(up))
     _toView.copy(viewToMapped).invert()
     this.#placeView.value.copy(offset).applyMatrix3(_toView)
     const { x, y, z } = east

@@ -4,17 +4,32 @@ import {
   tableTarget,
   type AtmosphereView
 } from '@welkin/atmosphere'
-import { Vector3, Vector4 } from 'three'
-import { Fn, If, float, int, mix, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import { MathUtils, Vector3, Vector4 } from 'three'
+import {
+  Fn,
+  If,
+  atan,
+  float,
+  int,
+  isBackgroundDepth,
+  mix,
+  texture,
+  uv,
+  vec2,
+  vec3,
+  vec4
+} from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import type { CloudsNode } from '../march/CloudsNode'
+import { CORNERS } from '../temporal/tsl/cells'
 import { unpack } from '../temporal/tsl/packing'
+import { groundDistance } from '../march/tsl/layerBoundaries'
 import { viewRayAt, viewRayEnd } from '../march/tsl/viewRay'
+import { select } from '../select'
 import {
   loop,
   vec4Array,
   type Float,
-  type Int,
   type LevelTexture,
   type Variable,
   type Vec2,
@@ -24,7 +39,6 @@ import {
 import { number, vector2 } from '../uniforms'
 import { BoltPass } from './BoltPass'
 import {
-  CHANNEL_COLOR,
   fromCamera,
   STEM_POINTS,
   STORED_POWER,
@@ -32,20 +46,15 @@ import {
   type StormColumn
 } from './channel'
 import { hazeAt } from './hazeAt'
-import { StormDensity } from './StormDensity'
-import { channelTint } from './tsl/channelTint'
+import { CLOUD_SOFTNESS, StormDensity } from './StormDensity'
+import { channelColor } from './tsl/channelColor'
 import { limbDarkening } from './tsl/limbDarkening'
-import { meanInverseSquare } from './tsl/lineLight'
 
-/**
- * Depth in cloud from which its light comes: a few scaled mean free paths; the line's light is as soft [m]. Smaller: a white core where a
- * channel leaves its cloud (*Storm at night*).
- */
-const CLOUD_SOFTNESS = 250
 /** Softness of light in haze: a line is as soft as its picture's pixels are wide [m]. */
 const HAZE_SOFTNESS = 25
 /** Longest path through lit haze [m]. */
 const LONGEST_HAZE = 60_000
+const LONGEST_OCTAVE = Math.log2(LONGEST_HAZE)
 
 /** Opacity of clouds below which their light is not seen [–]. */
 const LEAST_OPACITY = 1e-3
@@ -53,28 +62,19 @@ const LEAST_OPACITY = 1e-3
 /**
  * Light on faces of clouds that a flash lights from outside: of those turned away, and of thin ones [–]. 0: black (*Storm at night*).
  */
-const TURNED_AWAY = 0.1
-const UNFACED = 1 / 3
+const TURNED_AWAY = 0.3
 
 /** Share of the depth that one looks into clouds in which form is lost. Greater: heads without form; smaller: grain (*Storm at night*). */
 const BLURRED = 0.25
 /** Difference of log₂ of distances at which a neighbour's counts half. Greater: heads and ridges shine over others' edges; smaller: grain. */
 const LIKE = 0.03
 
-/** Marched pixels whose distances make a face, from the nearest one on. */
-const TAPS = [
-  [0, 0],
-  [-1, -1],
-  [1, -1],
-  [-1, 1],
-  [1, 1]
-] as const
-
 /** Opacity around a pixel from which nothing of the air behind its clouds is seen. */
 const OPAQUE = 0.999
 
-/** Edge of a pixel of the light, in the picture's. Greater: heads with blurred outlines. */
-const LIGHT_PIXEL = 4
+/** Pixels of the light in small pictures, and the greatest edge of one, in the picture's. Fewer and greater: heads with blurred outlines. */
+const LIGHT_PIXELS = 42_000
+const LIGHT_PIXEL = 7
 
 const _offset = new Vector3()
 
@@ -86,6 +86,8 @@ export class LightningPasses {
   /** Scale and offset from places in the picture to those among marched pixels: quotients of uniforms cost each pixel a division. */
   readonly #scale = vector2()
   readonly #offset = vector2()
+  /** Size of two pixels of the light, over the picture's. */
+  readonly #lightPixel = vector2()
   /** Points of the stem from the camera, in the mapped space [m], and scattering by air there [1/m]. */
   readonly #stem: readonly Vector4[] = Array.from({ length: STEM_POINTS }, () => new Vector4())
   readonly #stemArray = vec4Array(this.#stem as Vector4[])
@@ -110,61 +112,67 @@ export class LightningPasses {
   }
 
   /**
-   * Light of a pixel, for `STORED_POWER`: that of its clouds with the air before them, and in alpha that of the air before what was drawn, both over the
-   * channel's colour.
+   * Light of a pixel, for `STORED_POWER`: red and blue of its clouds with the air before them; that of the air before sky and bare ground, and of that before
+   * what was drawn, both over the channel's colour.
    */
   #lit(): Vec4 {
-    const { viewRays } = this.#clouds.passes
-    const { field } = this.#clouds
+    const { field, passes } = this.#clouds
+    const { viewRays } = passes
     const layers = field.atmosphere.layers.filter(layer => !('upTo' in layer))
     return Fn(() => {
       const here = uv() as unknown as Vec2
       const ray = viewRayAt(viewRays, here)
       const { direction, directionView } = ray
       const { opacity, distance, normal, known } = this.#faceAt(here, direction)
-      const air = float(0).toVar() as Variable<Float>
+      const air = vec2(0).toVar() as Variable<Vec2>
       If(opacity.lessThan(OPAQUE), () => {
-        const end = viewRayEnd(viewRays, here, ray).min(LONGEST_HAZE).toConst()
-        air.assign(this.#hazeLight(direction, end))
+        const cosView = direction.dot(field.view.up).clamp(-1, 1).toConst() as Float
+        const ground = groundDistance(field, cosView).min(LONGEST_HAZE).toConst() as Float
+        air.assign(vec2(this.#hazeLight(direction, ground)))
+        const end = viewRayEnd(viewRays, here, ray).toVar() as Variable<Float>
+        // Before the sky, that of what stands beside the pixel.
+        If(end.lessThan(ground).not(), () => {
+          const beside = CORNERS.map(corner => {
+            const at = vec2(...corner)
+              .sub(0.5)
+              .mul(this.#lightPixel)
+              .add(here)
+            return passes.seen.ray.sample(at).level(0).y
+          }).reduce((a, b) => a.min(b))
+          end.assign(beside.exp2())
+        })
+        If(end.lessThan(ground), () => {
+          air.y.assign(this.#hazeLight(direction, end))
+        })
       })
-      const light = vec2(air).toVar() as Variable<Vec2>
+      const light = vec2(air.x).toVar() as Variable<Vec2>
       If(opacity.greaterThan(LEAST_OPACITY), () => {
         const place = direction.mul(distance).toConst() as Vec3
-        const line = this.#lineLight(place)
+        const way = this.#density.source.sub(place).toConst() as Vec3
+        const square = way.dot(way).toConst() as Float
         const out = this.#density.lightOut(place)
-        const turned = normal.dot(line.xyz).div(line.w).add(1).div(2).toConst() as Float
+        const turned = normal.dot(way).mul(square.inverseSqrt()).add(1).div(2).toConst() as Float
         const outside = turned
           .mul(turned)
+          .mul(known)
           .mul(1 - TURNED_AWAY)
           .add(TURNED_AWAY)
-        const inside = limbDarkening(normal.dot(direction).negate())
-        const face = mix(mix(1, UNFACED, out.y), mix(inside, outside, out.y), known)
-        const lit = line.w.mul(out.x).mul(face)
+        const inside = mix(1, limbDarkening(normal.dot(direction).negate()), known)
+        const face = mix(inside, outside, out.y)
+        const lit = out.x.mul(face).div(square.add(CLOUD_SOFTNESS ** 2))
         const displacement = directionView.mul(distance).toConst()
         const { transmittance } = aerialPerspectiveTo(field.view, displacement, layers)
-        const before = this.#hazeLight(direction, distance.min(LONGEST_HAZE).toConst()).toConst()
+        const before = this.#hazeLight(direction, distance.min(LONGEST_HAZE).toConst())
         const radiance = transmittance.xz.mul(lit).mul(STORED_POWER / (4 * Math.PI ** 2))
         light.assign(radiance.add(before))
-        air.assign(air.max(before))
       })
-      return vec4(channelTint(light), air)
+      return vec4(light, air)
     })()
   }
 
-  /** Opacity of the clouds of a marched pixel, their mean distance, and the mean deviation from it [m]. @param here - In its textures. */
-  #seenAt(here: Vec2): Vec3 {
-    const { seen } = this.#clouds.passes
-    const distances = seen.distances.sample(here).level(0).toConst() as Vec4
-    const shares = seen.shares.sample(here).level(0).toConst() as Vec4
-    const opacity = shares.dot(vec4(1)).toConst() as Float
-    const mean = shares.dot(distances).div(opacity.max(1e-6)).toConst() as Float
-    const depth = distances.sub(mean).abs().dot(shares).div(opacity.max(1e-6))
-    return vec3(opacity, mean, depth).toConst()
-  }
-
   /**
-   * Face of a pixel's clouds: their opacity around, its distance [m] and normal, and from 0 to 1 how much of a face they have. A plane through those of five
-   * marched pixels that are as far as the pixel's own, by history: single ones have the march's grain. To be called inside of a shader function.
+   * Face of a pixel's clouds: their opacity around, its distance [m] and normal, and from 0 to 1 how much of a face they have. A plane through those of nine marched pixels that are as far as the pixel's own, by history: single ones
+   * have the march's grain. To be called inside of a shader function, outside of branches.
    *
    * @param here - Place in the picture, y down.
    */
@@ -172,39 +180,47 @@ export class LightningPasses {
     here: Vec2,
     direction: Vec3
   ): { opacity: Float; distance: Float; normal: Vec3; known: Float } {
-    const { viewRays, accumulated } = this.#clouds.passes
+    const { viewRays, accumulated, seen } = this.#clouds.passes
     const { marchedSize, block, size } = viewRays.frame
     const own = unpack(accumulated.distances.sample(here).level(0)).x
     const place = here.mul(this.#scale).add(this.#offset).mul(marchedSize).sub(0.5).toConst()
     const nearest = place.add(0.5).floor().toConst() as Vec2
-    const taps = TAPS.map(tap => {
-      const texel = nearest.add(vec2(...tap)).toConst() as Vec2
-      return {
-        shift: texel.sub(place).toConst(),
-        seen: this.#seenAt(texel.add(0.5).div(marchedSize).toConst())
-      }
+    // Where the pixel sees none, all around are as unlike.
+    const reference = own.min(LONGEST_OCTAVE).exp2().toConst() as Float
+    // Sums of opacities by place in the picture; of weights, of these by place, depth and square of the place, of distances from the reference, and of
+    // these by place.
+    const opacity = float(0).toVar() as Variable<Float>
+    const weights = vec4(0).toVar() as Variable<Vec4>
+    const squares = vec2(0).toVar() as Variable<Vec2>
+    const rises = vec3(0).toVar() as Variable<Vec3>
+    loop('faceTap', 9, index => {
+      const row = index.div(int(3)).toConst()
+      const texel = nearest
+        .add(vec2(index.sub(row.mul(3)), row))
+        .sub(1)
+        .toConst() as Vec2
+      const shift = texel.sub(place).toConst() as Vec2
+      const at = texel.add(0.5).div(marchedSize).toConst() as Vec2
+      const distances = seen.distances.sample(at).level(0).toConst() as Vec4
+      const shares = seen.shares.sample(at).level(0).toConst() as Vec4
+      const seenShare = shares.dot(vec4(1)).toConst() as Float
+      const middle = shares.dot(distances).div(seenShare.max(1e-6)).toConst() as Float
+      // Smooth from pixel to pixel: a weight is 0 where its place among the nine changes.
+      const near = vec2(1.5).sub(shift.abs()).clamp(0, 1).toConst() as Vec2
+      const share = near.x.mul(near.y).mul(seenShare).toConst() as Float
+      const rise = middle.sub(reference).toConst() as Float
+      const unlike = rise.div(reference.mul(LIKE * Math.LN2)).toConst() as Float
+      const weight = share.div(unlike.mul(unlike).add(1)).toConst() as Float
+      opacity.addAssign(share)
+      const depth = distances.sub(middle).abs().dot(shares).div(seenShare.max(1e-6))
+      weights.addAssign(vec4(1, shift, depth).mul(weight))
+      squares.addAssign(shift.mul(shift).mul(weight))
+      rises.addAssign(vec3(1, shift).mul(rise.mul(weight)))
     })
-    // Where the pixel sees none, the farthest around.
-    const farthest = taps.map(({ seen }) => seen.y as Float).reduce((a, b) => a.max(b))
-    const reference = own.exp2().min(farthest).max(1).toConst() as Float
-    // Sums of opacities; of weights, of these by place, depth and square of the place, of distances from the reference, and of these by place.
-    let opacity: Float = float(0)
-    let weights: Vec4 = vec4(0)
-    let squares: Vec2 = vec2(0)
-    let rises: Vec3 = vec3(0)
-    for (const { shift, seen } of taps) {
-      const rise = seen.y.sub(reference).toConst() as Float
-      const apart = rise.div(reference.mul(LIKE * Math.LN2)).toConst() as Float
-      const weight = seen.x.div(apart.mul(apart).add(1)).toConst() as Float
-      opacity = opacity.add(seen.x)
-      weights = weights.add(vec4(1, shift, seen.z).mul(weight)).toConst()
-      squares = squares.add(shift.mul(shift).mul(weight)).toConst()
-      rises = rises.add(vec3(1, shift).mul(rise.mul(weight))).toConst()
-    }
     const mean = weights.yzw.div(weights.x.max(1e-9)).toConst() as Vec3
     const slopes = rises.yz
       .sub(mean.xy.mul(rises.x))
-      .div(squares.sub(mean.xy.mul(weights.yz)).max(1e-3))
+      .div(squares.sub(mean.xy.mul(weights.yz)).max(weights.x.mul(0.1)).max(1e-9))
       .toConst() as Vec2
     const rise = rises.x.div(weights.x.max(1e-9)).sub(slopes.dot(mean.xy))
     const distance = reference.add(rise).max(1).toConst() as Float
@@ -222,23 +238,8 @@ export class LightningPasses {
       normal.addAssign(aside.normalize().mul(slope.div(width.add(blurred))))
     }
     const known = width.div(width.add(blurred)).toConst() as Float
-    opacity = opacity.div(TAPS.length).toConst()
-    return { opacity, distance, normal: normal.normalize().toConst(), known }
-  }
-
-  /** Mean of 1/(r² + s²) over the stem, for a place in clouds, in w, and of that times the direction to the stem [1/m²]. */
-  #lineLight(place: Vec3): Vec4 {
-    const sum = vec4(0).toVar() as Variable<Vec4>
-    loop('flashLine', 2, index => {
-      // The stem is nearly straight.
-      const first = index.mul(int(2)).toConst() as Int
-      const [from, to] = [first, first.add(int(2))].map(
-        i => this.#stemArray.element(i).xyz.sub(place).toConst() as Vec3
-      )
-      const light = meanInverseSquare(from, to, float(CLOUD_SOFTNESS))
-      sum.addAssign(vec4(from.add(to).normalize(), 1).mul(light))
-    })
-    return sum.div(2).toConst()
+    const face = { distance, normal: normal.normalize().toConst() as Vec3, known }
+    return { ...face, opacity: opacity.div(4) }
   }
 
   /** Light that the air on a ray scatters once, without direction, for `STORED_POWER` [cd/m²]: from three points of the stem. */
@@ -246,11 +247,18 @@ export class LightningPasses {
     const sum = float(0).toVar() as Variable<Float>
     loop('flashHaze', 3, index => {
       const point = this.#stemArray.element(index.mul(int(2))).toConst() as Vec4
-      const from = point.xyz.negate().toConst() as Vec3
-      const to = from.add(direction.mul(end)).toConst() as Vec3
-      sum.addAssign(meanInverseSquare(from, to, float(HAZE_SOFTNESS)).mul(point.w))
+      const along = point.xyz.dot(direction).toConst() as Float
+      const aside = point.xyz.sub(direction.mul(along)).toConst() as Vec3
+      const square = aside
+        .dot(aside)
+        .add(HAZE_SOFTNESS ** 2)
+        .toConst() as Float
+      const b = square.sqrt().toConst() as Float
+      // As in `meanInverseSquare`.
+      const angle = atan(b.mul(end), square.sub(along.mul(end.sub(along)))) as unknown as Float
+      sum.addAssign(angle.mul(point.w).div(b))
     })
-    return sum.mul(end).mul(STORED_POWER / (3 * 16 * Math.PI ** 2))
+    return sum.mul(STORED_POWER / (3 * 16 * Math.PI ** 2)).toConst()
   }
 
   /**
@@ -263,12 +271,13 @@ export class LightningPasses {
     If(this.power.greaterThan(0), () => {
       const here = uv() as unknown as Vec2
       const light = this.#light.sample(here).level(0).toConst() as Vec4
-      const glow = mix(light.xyz, vec3(light.w), transmittance).toVar() as Variable<Vec3>
+      const { viewRays } = this.#clouds.passes
+      const air = select(isBackgroundDepth(viewRays.depthAt(here)), light.z, light.w)
+      const glow = mix(light.xy, vec2(air), transmittance).toVar() as Variable<Vec2>
       If(this.#bolt.isNear(here), () => {
-        glow.addAssign(channelTint(this.#bolt.sample(here)))
+        glow.addAssign(this.#bolt.sample(here))
       })
-      const scale = this.power.mul(1 / STORED_POWER)
-      result.addAssign(glow.mul(vec3(...CHANNEL_COLOR)).mul(scale))
+      result.addAssign(channelColor(glow).mul(this.power.mul(1 / STORED_POWER)))
     })
     return result
   }
@@ -303,7 +312,9 @@ export class LightningPasses {
       .sub(jitter.value)
       .divide(blocks)
     const { x, y } = size.value
-    this.#target.setSize(Math.ceil(x / LIGHT_PIXEL), Math.ceil(y / LIGHT_PIXEL))
+    const pixel = MathUtils.clamp(Math.sqrt((x * y) / LIGHT_PIXELS), 1, LIGHT_PIXEL)
+    this.#target.setSize(Math.ceil(x / pixel), Math.ceil(y / pixel))
+    this.#lightPixel.value.set(2 / this.#target.width, 2 / this.#target.height)
     this.#pass.render(renderer, this.#target)
     this.#bolt.render(renderer, view, _offset, channel, power.branches / power.all)
   }

@@ -1,6 +1,6 @@
 import { FragmentPass, tableTarget } from '@welkin/atmosphere'
-import type { RenderTarget, Vector3 } from 'three'
-import { Fn, If, float, mix, smoothstep, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
+import { Vector4, type RenderTarget, type Vector3 } from 'three'
+import { Fn, If, float, int, mix, smoothstep, texture, uv, vec2, vec3, vec4 } from 'three/tsl'
 import type { Renderer } from 'three/webgpu'
 import { select } from '../select'
 import type { CloudField } from '../density/CloudField'
@@ -10,6 +10,7 @@ import { sampleLayer } from '../density/tsl/sampleLayer'
 import { backgroundAt } from '../density/tsl/sampler'
 import {
   loop,
+  vec4Array,
   type Float,
   type LevelTexture,
   type Variable,
@@ -18,7 +19,8 @@ import {
   type Vec4
 } from '../tsl-types'
 import { number, vector3 } from '../uniforms'
-import type { PlacedChannel, StormColumn } from './channel'
+import { STEM_POINTS, type PlacedChannel, type StormColumn } from './channel'
+import { meanInverseSquare } from './tsl/lineLight'
 
 /** Cells along the ground and upwards; slices lie in rows of tiles. */
 const SIZE = 96
@@ -46,16 +48,14 @@ const THINNEST = 3
 /** Scaled extinction below which there is no cloud [1/m]. */
 const CLEAR = 3e-4
 
+/**
+ * Depth in cloud from which its light comes: a few scaled mean free paths; the line's light is as soft [m]. Smaller: a white core where a
+ * channel leaves its cloud (*Storm at night*).
+ */
+export const CLOUD_SOFTNESS = 250
+
 /** Clear ways between parts of one cloud, and between clouds [m]. Smaller: bright islands with outlines on towers (*Storm at night*). */
 const GAP = [150, 850] as const
-
-/** Corners of a tetrahedron half a cell about a place [cells]. */
-const CORNERS = [
-  [0.5, 0.5, 0.5],
-  [0.5, -0.5, -0.5],
-  [-0.5, 0.5, -0.5],
-  [-0.5, -0.5, 0.5]
-] as const
 
 /** Depth passed on a way out of a cloud, as the light that comes out, over `OPEN`. */
 const passed = (depth: Float): Float => float(OPEN).div(depth.add(OPEN))
@@ -75,7 +75,6 @@ const nodeOf = (target: RenderTarget): LevelTexture<Vec2> =>
  * of depth τ passes 1/(1 + τ/`OPEN`), as a slab does.
  */
 export class StormDensity {
-  /** Density of the cells, until light has been found from it; then that which comes out of them. */
   readonly #target = boxTarget('Box')
   readonly #openTarget = tableTarget('Welkin.LightningWaysOut', 1, 1)
   readonly #lightTarget = boxTarget('Light')
@@ -88,15 +87,17 @@ export class StormDensity {
   readonly #axes = [vector3(), vector3(), vector3()] as const
   readonly #base = number()
   readonly #thickness = number(1)
-  /** Start of light, in the flash's frame [m]. */
+  /** Start of light, in the flash's frame [m], and from the camera, in the mapped space [m]; points of the stem, in the flash's frame [m]. */
   readonly #source = vector3()
+  readonly source = vector3()
+  readonly #stem: readonly Vector4[] = Array.from({ length: STEM_POINTS }, () => new Vector4())
+  readonly #stemArray = vec4Array(this.#stem as Vector4[])
 
   constructor(readonly field: CloudField) {
     this.#passes = [
       [new FragmentPass('Welkin.LightningDensity', this.#draw()), this.#target],
       [new FragmentPass('Welkin.LightningWaysOut', this.#waysOut()), this.#openTarget],
-      [new FragmentPass('Welkin.LightningLight', this.#lit()), this.#lightTarget],
-      [new FragmentPass('Welkin.LightningOut', this.#smoothed()), this.#target]
+      [new FragmentPass('Welkin.LightningLight', this.#lit()), this.#lightTarget]
     ]
   }
 
@@ -175,12 +176,13 @@ export class StormDensity {
   }
 
   /**
-   * Light that comes out at a cell, over what an even ball would send there, and from 0 to 1 how much its cloud is another than the flash's: clefts within a
-   * cloud part nothing.
+   * Light that comes out at a cell, over what an even ball about the light's start would send there, and from 0 to 1 how much its cloud is another than the
+   * flash's: clefts within a cloud part nothing.
    */
   #lit(): Vec4 {
     return Fn(() => {
-      const way = this.#cell().sub(this.#source).toConst() as Vec3
+      const cell = this.#cell()
+      const way = cell.sub(this.#source).toConst() as Vec3
       const length = way
         .length()
         .mul(6 / SAMPLES)
@@ -208,38 +210,31 @@ export class StormDensity {
       })
       const other = smoothstep(...GAP, gap).toConst() as Float
       const light = mix(open.mul(passed(whole)), out.mul(passed(depth)), other)
-      return vec4(light.min(THINNEST), other, 0, 1)
+      const line = float(0).toVar() as Variable<Float>
+      loop('flashLine', STEM_POINTS - 1, index => {
+        const [from, to] = [index, index.add(int(1))].map(
+          i => this.#stemArray.element(i).xyz.sub(cell).toConst() as Vec3
+        )
+        line.addAssign(meanInverseSquare(from, to, float(CLOUD_SOFTNESS)))
+      })
+      const square = way.dot(way).add(CLOUD_SOFTNESS ** 2)
+      const gain = line.mul(square).div(STEM_POINTS - 1)
+      return vec4(light.min(THINNEST).mul(gain), other, 0, 1)
     })()
   }
 
-  /** `#lit`, with that of the cells around. */
-  #smoothed(): Vec4 {
-    return Fn(() => {
-      const cell = this.#cell()
-      // Tents at the corners of a tetrahedron: smooth, as by a B-spline; one alone shows its cells.
-      const light = CORNERS.map(corner => this.#read(this.#light, cell, corner))
-        .reduce((sum, each) => sum.add(each))
-        .div(CORNERS.length)
-      return vec4(light, 1)
-    })()
-  }
-
-  /** Value of a box at a place in the flash's frame, shifted by parts of a cell; out of it, that at its edge. */
-  #read(
-    box: LevelTexture<Vec2>,
-    place: Vec3,
-    shift = [0, 0, 0] as readonly [number, number, number]
-  ): Vec3 {
+  /** Value of a box at a place in the flash's frame; out of it, that at its edge. */
+  #read(box: LevelTexture<Vec2>, place: Vec3): Vec3 {
     const { x, y } = place
     const warped = vec2(x.div(x.abs().add(FINE)), y.div(y.abs().add(FINE)))
     const flat = warped
       .mul(SHRINK / 2)
-      .add(vec2(0.5 + shift[0] / SIZE, 0.5 + shift[1] / SIZE))
+      .add(0.5)
       .clamp(0.5 / SIZE, 1 - 0.5 / SIZE)
       .toConst() as Vec2
     const slice = this.#heightOf(place)
       .mul(SLICES)
-      .add(shift[2] - 0.5)
+      .sub(0.5)
       .clamp(0, SLICES - 1)
       .toConst() as Float
     const first = slice.floor().toConst() as Float
@@ -264,7 +259,7 @@ export class StormDensity {
   }
 
   /**
-   * Light that comes out at a place, over what an even ball would send there, and from 0 to 1 how much it comes out of another cloud. To be called inside of
+   * Light that comes out at a place, over what an even ball about the light's start would send there, and from 0 to 1 how much it comes out of another cloud. To be called inside of
    * a shader function.
    *
    * @param offset - Displacement from the camera, in the mapped space [m].
@@ -273,12 +268,16 @@ export class StormDensity {
     const shifted = offset.sub(this.#place).toConst() as Vec3
     const [east, north, up] = this.#axes.map(axis => shifted.dot(axis))
     const place = vec3(east, north, up).toConst() as Vec3
-    return this.#read(this.#box, place).xy
+    return this.#read(this.#light, place).xy
   }
 
   /** Follows the camera. @param offset - The flash's place from the camera, in the mapped space [m]. */
   update(offset: Vector3): void {
     this.#place.value.copy(offset)
+    const source = this.source.value.copy(offset)
+    this.#source.value.toArray().forEach((value, i) => {
+      source.addScaledVector(this.#axes[i].value, value)
+    })
   }
 
   /** Draws the box around a flash, before any light of it; the field is up to date. */
@@ -288,19 +287,20 @@ export class StormDensity {
     { axes, stem }: PlacedChannel,
     { base, top }: StormColumn
   ): void {
-    this.update(offset)
     axes.forEach((axis, i) => this.#axes[i].value.copy(axis))
+    stem.forEach((point, i) => this.#stem[i].set(...point, 0))
     this.#base.value = base
     this.#thickness.value = top - base
     // Where most of it is in the cloud.
     const inside = stem.filter(([, , z]) => z > base)
     const middle = inside[Math.floor(inside.length / 2)] ?? stem[0]
     this.#source.value.set(...(middle as [number, number, number]))
+    this.update(offset)
     for (const [pass, target] of this.#passes) pass.render(renderer, target)
   }
 
   /** Frees its textures. */
   dispose(): void {
-    for (const owned of new Set(this.#passes.flat())) owned.dispose()
+    for (const owned of this.#passes.flat()) owned.dispose()
   }
 }
