@@ -73,8 +73,8 @@ const LIKE = 0.03
 const OPAQUE = 0.999
 
 /** Pixels of the light in small pictures, and the greatest edge of one, in the picture's. Fewer and greater: heads with blurred outlines. */
-const LIGHT_PIXELS = 42_000
-const LIGHT_PIXEL = 7
+const LIGHT_PIXELS = 32_000
+const LIGHT_PIXEL = 8
 
 const _offset = new Vector3()
 
