@@ -4,7 +4,7 @@ import type { Still } from './Still'
 /**
  * Presets of the contact sheet in the clouds' docs, a row each: from the ground (`presets.ts`: aside, behind, low) and by these views. Taken at
  * 480×354, put together by ImageMagick:
- * `montage $rows -tile 6x8 -resize 240x177 -geometry +0+0 -quality 84 packages/clouds/docs/contact-sheet.jpg`.
+ * `montage $rows -tile 6x8 -resize 240x177 -geometry +0+0 -quality 76 packages/clouds/docs/contact-sheet.jpg`.
  */
 const presets: readonly CloudPresetName[] = [
   'fairWeather',
