@@ -72,6 +72,7 @@ const ROWS: readonly Row[] = [
   { name: 'fair, from a slope', changes: FULL, view: 'slope' },
   { name: 'fair, above the clouds', changes: FULL, view: 'above' },
   { name: 'broken', changes: { ...FULL, weather: 'broken' } },
+  { name: 'broken, above the clouds', changes: { ...FULL, weather: 'broken' }, view: 'above' },
   { name: 'overcast', changes: { ...FULL, weather: 'overcast' } },
   { name: 'mist', changes: MIST },
   { name: 'mist, from a slope', changes: MIST, view: 'slope' },
@@ -80,10 +81,13 @@ const ROWS: readonly Row[] = [
   { name: 'storm', changes: STORM },
   { name: 'storm, turning', changes: STORM, turn: 'on' },
   { name: 'storm, a flash', changes: STORM, flash: true },
+  { name: 'storm, above the clouds', changes: STORM, view: 'above' },
   { name: 'dusk', changes: { ...FULL, ...DUSK } },
+  { name: 'dusk, above the clouds', changes: { ...FULL, ...DUSK }, view: 'above' },
   { name: 'mist at dusk', changes: { ...MIST, ...DUSK } },
   { name: 'snow at dusk', changes: { ...SNOW, ...DUSK } },
   { name: 'storm at dusk', changes: { ...STORM, ...DUSK } },
+  { name: 'storm at dusk, from the shore', changes: { ...STORM, ...DUSK }, view: 'shore' },
   {
     name: 'storm at dusk, turning, a flash',
     changes: { ...STORM, ...DUSK },
@@ -224,6 +228,7 @@ export async function timeValley(
     rows.push([row.name, shares])
   }
   const over = rows.filter(([, shares]) => sumOf(shares) > GOAL).map(([name]) => name)
+  if (over.length > 0) process.exitCode = 1
   log(over.length > 0 ? ` over ${GOAL} ms: ${over.join('; ')}` : ` no row takes over ${GOAL} ms`)
   const parts: PassTime[] = []
   for (const part of isWhole ? PARTS : []) {

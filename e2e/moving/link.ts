@@ -131,6 +131,7 @@ export async function testLink(browser: Browser, origin: string, report: Report)
   // By the controls, and by the scene, whose clock runs.
   await page.selectOption('#control-weather', OTHER_WEATHER)
   await page.fill('#control-hour', '6.5')
+  await checkKeys(story, report)
   const link = await addressWith(page, args(6.5, OTHER_WEATHER))
   report.check(
     new URL(link).hash === `#view=${place}`,
@@ -150,6 +151,22 @@ export async function testLink(browser: Browser, origin: string, report: Report)
     `${late} h after ${hour.toFixed(2)} h, and the clock ${now.toFixed(2)} h`
   )
   await page.close()
+}
+
+/** A key goes to the story once the pointer is over it, whatever control was used before; the line about keys is not covered. */
+async function checkKeys(story: Frame, report: Report): Promise<void> {
+  const hasKeys = (): Promise<boolean> => story.evaluate(() => document.hasFocus())
+  const before = await hasKeys()
+  await story.hover('canvas', { position: { x: 9, y: 90 } })
+  report.check(await hasKeys(), 'keys go to the story under the pointer', `before: ${before}`)
+  const covered = await story.evaluate(() => {
+    const [help, arc] = ['.welkin-help', '.welkin-hour'].map(each =>
+      document.querySelector(each)!.getBoundingClientRect()
+    )
+    const isBeside = help.right <= arc.left || help.left >= arc.right
+    return isBeside ? 0 : Math.max(help.bottom - arc.top, 0)
+  })
+  report.check(covered === 0, 'the arc of the day covers no line about keys', `${covered} px`)
 }
 
 /** Hour of the story in the address; NaN if it has none. */

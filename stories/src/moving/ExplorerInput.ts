@@ -57,6 +57,8 @@ export class ExplorerInput {
     view.addEventListener('keyup', event => this.letGo(event.code), options)
     view.addEventListener('blur', () => this.release(), options)
     page.addEventListener('visibilitychange', () => this.release(), options)
+    // Else keys go to what was used last: a control of Storybook's panel, in a page around this one.
+    canvas.addEventListener('pointerenter', () => view.focus(), options)
     canvas.addEventListener('pointerdown', event => this.touch(event), options)
     canvas.addEventListener('pointermove', event => this.drag(event), options)
     for (const end of ['pointerup', 'pointercancel', 'lostpointercapture'] as const) {

@@ -16,6 +16,7 @@ const STYLE = `
   .welkin-hour { position: absolute; left: 50%; bottom: 12px; width: ${WIDTH}px; height: ${HEIGHT}px;
     transform: translateX(-50%); border-radius: 6px; background: rgb(5 7 10 / 55%); cursor: grab; touch-action: none }
   .welkin-hour:active { cursor: grabbing }
+  .welkin:has(.welkin-hour) .welkin-help { bottom: ${HEIGHT + 24}px }
   .welkin-hour svg { display: block; overflow: visible }
   .welkin-hour text { fill: #e8edf2; font: 11px system-ui, sans-serif; text-anchor: middle }
 `

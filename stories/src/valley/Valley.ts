@@ -7,7 +7,7 @@ import {
   skyEnvironment,
   stars
 } from '@welkin/atmosphere'
-import type { Atmosphere, LightShaftsQuality } from '@welkin/atmosphere'
+import type { Atmosphere } from '@welkin/atmosphere'
 import { cloudEnvironment, CloudLayers } from '@welkin/clouds'
 import type { CloudQuality, CloudQualityName, Lightning } from '@welkin/clouds'
 import { MathUtils, PerspectiveCamera, Scene, Vector3 } from 'three'
@@ -34,6 +34,7 @@ import { StreetLamps } from './StreetLamps'
 import { StepClock } from './StepClock'
 import { setLit } from './litLights'
 import { SkyLightMap } from './SkyLightMap'
+import { shaftsQuality } from './shaftsQuality'
 import { setDistant, setMapped } from './VertexLitMaterial'
 import { createVillage, doors } from './village'
 import { VIEWS, type ValleyName } from './views'
@@ -63,13 +64,8 @@ export interface ValleyState extends ValleyFeatures, PostEffects, ValleyFactors 
 /** Elevations of the sun between which lamps are lit [degrees]. */
 const LAMPS = [3, -2] as const
 
-/** Fineness of light shafts, by that of clouds. Coarse ones keep all that shafts are held to, for 0.3 ms less. */
-const SHAFTS: Readonly<Record<CloudQualityName, LightShaftsQuality>> = {
-  low: 'low',
-  medium: 'low',
-  high: 'high',
-  ultra: 'high'
-}
+/** Steps of the air's tables that a frame bakes while the weather changes, of 28. */
+const BAKE_STEPS = 3
 
 /** Elevation of the sun over which moon and night sky light nothing that one sees: a full moon gives a hundredth of the light of dusk [degrees]. */
 const NIGHT_LIGHTS = -4
@@ -229,7 +225,7 @@ export class Valley {
     if (date !== before.date) this.#setDay(this.cycle.hour)
     if (hour !== before.hour) this.cycle.hour = hour
     const fineness = typeof quality === 'string' ? quality : 'low'
-    this.air.shafts.quality = SHAFTS[fineness]
+    this.air.shafts.quality = shaftsQuality[fineness]
     this.#land.setQuality(fineness)
     this.#land.show(trees, village)
     applyFactors(this.#state, this.#style, this.#targets)
@@ -322,6 +318,8 @@ export class Valley {
     this.pipeline.render()
     this.#finish.afterDrawn(luminanceScale)
     this.#renderer.autoClear = autoClear
+    // The first tables were baked at once; those of another haze come over some frames.
+    this.atmosphere.bakeStepsPerFrame = BAKE_STEPS
     if (this.#water.mesh.visible) this.#mirror.update(this.#renderer, this.camera, luminanceScale)
   }
 
