@@ -131,7 +131,10 @@ it('measures what is on, each by its own switch', () => {
 it('has a share for every switch of the panel, but for what sets the clock and the exposure', () => {
   const switches = Object.entries(openingState).filter(([, value]) => typeof value === 'boolean')
   const keys = switches.map(([key]) => key)
-  const state: ValleyState = { ...openingState, ...Object.fromEntries(keys.map(key => [key, true])) }
+  const state: ValleyState = {
+    ...openingState,
+    ...Object.fromEntries(keys.map(key => [key, true]))
+  }
   const metered = new Set(meteredFeatures(state).flatMap(({ off }) => Object.keys(off)))
   expect(keys.filter(key => !metered.has(key))).toEqual(['paused', 'autoExposure'])
 })
