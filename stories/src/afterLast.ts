@@ -1,8 +1,8 @@
 /** Something that is done once nobody has asked for it for a while. */
 export interface AfterLast {
-  ask(): void
+  readonly ask: () => void
   /** Forgets what was asked for. */
-  cancel(): void
+  readonly cancel: () => void
 }
 
 /**

@@ -2,7 +2,7 @@ import { PerspectiveCamera, Vector3 } from 'three'
 import { expect, it } from 'vitest'
 import { keepStand } from '../src/sandbox/keepStand'
 
-/** Where a camera stands and looks, on a planet whose top is the origin. */
+/** Height, way from the top and angles of a camera over a planet whose top is the origin. */
 function standOf(camera: PerspectiveCamera, radius: number) {
   const up = camera.position.clone().add(new Vector3(0, radius, 0))
   const height = up.length() - radius

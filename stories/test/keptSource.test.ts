@@ -32,7 +32,7 @@ function tabAt(hash = '') {
   return { location, kept, storage, open, goTo }
 }
 
-/** What a source has the fields show. */
+/** Contents that a source gives the story's fields. */
 function shownBy(source: KeptSource): SourceArgs | undefined {
   let shown: SourceArgs | undefined
   source.show(changes => (shown = changes))
