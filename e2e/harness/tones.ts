@@ -12,8 +12,12 @@ const NIGHT = 1
 /** Most of a picture that may be clipped, outside of the sun's disc [–]. */
 const CLIPPED = 0.03
 
-/** Means of pictures of days, and of nights, which stay dark and are not black [–]. */
+/** Means of pictures of days [–]. */
 const DAYS = [0.2, 0.5] as const
+/**
+ * Means of pictures of nights, which stay dark and are not black [–]. `autoExposure` alone gives 0.02, of stars, to 0.2, as its
+ * GPU test says; a story's pictures have dusk, lamps or moonlight, some with a compensation.
+ */
 const NIGHTS = [0.04, 0.35] as const
 /** Least mean where black space fills most of the picture [–]. */
 const IN_SPACE = 0.1

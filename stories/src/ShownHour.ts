@@ -1,6 +1,9 @@
 /** Time between two showings of the hour in the controls, and so in the address [ms]. */
 const INTERVAL = 3000
 
+/** Hundredths of an hour that have passed, in which the sun moves by 0.15° [h]. */
+export const toHundredths = (hour: number): number => Math.floor(100 * hour + 1e-9) / 100
+
 /** Hour of a running clock in a story's controls, and so in the address; one that is set there by hand is told from it. */
 export class ShownHour {
   #shown: number
@@ -21,11 +24,11 @@ export class ShownHour {
     return this.#byHand
   }
 
-  /** Hour that the controls are to show now, a tenth or less before the clock's [h]; undefined most of the time. */
+  /** Hour that the controls are to show now, a hundredth or less before the clock's [h]; undefined most of the time. */
   next(hour: number): number | undefined {
     if (this.#now() - this.#last < INTERVAL) return undefined
     this.#last = this.#now()
-    return (this.#shown = Math.floor(10 * hour) / 10)
+    return (this.#shown = toHundredths(hour))
   }
 
   /**

@@ -23,13 +23,13 @@ import { flyToView, lookFrom } from './globe/places'
 import { aimShadow, prepareShadow } from './globe/sunShadow'
 import { Explorer } from './moving/Explorer'
 import { overlayOn } from './overlay'
+import { KEY, KeptSource, type SourceArgs } from './photogrammetry/KeptSource'
 import type { SightName } from './photogrammetry/places'
 import { ShownTiles } from './photogrammetry/ShownTiles'
-import type { TileSource } from './photogrammetry/unlitTiles'
 import { createRenderer, dateOf, exposureOf, fitToCanvas, frameClock } from './scene'
 import type { RendererArgs, SceneHandle, TimeArgs } from './scene'
 
-export interface PhotogrammetryArgs extends RendererArgs, TimeArgs, TileSource {
+export interface PhotogrammetryArgs extends RendererArgs, TimeArgs, SourceArgs {
   place: SightName
   /** Share of Welkin's light in the picture. */
   strength: number
@@ -134,7 +134,8 @@ export async function createPhotogrammetry(
   }
   let asked = 0
   const ask = (): void => {
-    tiles.ask(current, { onLine: navigator.onLine, origin: location.origin })
+    const source = kept?.current ?? { url: current.url, key: current[KEY] }
+    tiles.ask(source, { onLine: navigator.onLine, origin: location.origin })
     const count = ++asked
     ready = tiles.ready.then(async () => {
       // Exposure takes its numbers from the tables.
@@ -154,10 +155,11 @@ export async function createPhotogrammetry(
     lit.set({ strength: current.strength, albedo: current.albedo })
     layers.at(0).coverage = current.clouds
   }
+  const kept = args.frame ? undefined : new KeptSource(args, ask)
   apply()
   ask()
 
-  return {
+  const handle: SceneHandle<PhotogrammetryArgs> = {
     renderer,
     scene,
     camera,
@@ -169,6 +171,7 @@ export async function createPhotogrammetry(
       return tiles.progress
     },
     render() {
+      kept?.show(handle.onArgs)
       explorer?.update(elapsed())
       draw()
       say()
@@ -179,15 +182,15 @@ export async function createPhotogrammetry(
       if (current.frame) ask()
     },
     update(changes) {
-      const { url, key, place } = current
+      const { place } = current
       Object.assign(current, changes)
       apply()
-      const isOther = url !== current.url || key !== current.key
-      if (isOther || explorer === undefined) ask()
-      else if (place !== current.place) tiles.revisit()
+      if (kept === undefined) ask()
+      else if (!kept.take(current) && place !== current.place) tiles.revisit()
     },
     dispose() {
       explorer?.dispose()
+      kept?.dispose()
       note?.remove()
       tiles.dispose()
       pipeline.dispose()
@@ -199,4 +202,5 @@ export async function createPhotogrammetry(
       void renderer.dispose()
     }
   }
+  return handle
 }

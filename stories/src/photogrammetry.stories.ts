@@ -2,6 +2,7 @@ import type { Meta, StoryObj } from '@storybook/html-vite'
 import { mount } from './mount'
 import { createPhotogrammetry } from './photogrammetry.scene'
 import type { PhotogrammetryArgs } from './photogrammetry.scene'
+import { KEY } from './photogrammetry/KeptSource'
 import { SIGHTS } from './photogrammetry/places'
 import { choiceOf, rendererArgTypes, timeArgTypes } from './storyArgs'
 import { storyCode } from './storyCode'
@@ -19,10 +20,14 @@ const meta: Meta<PhotogrammetryArgs> = {
     url: {
       name: 'Tileset',
       description:
-        "URL of any tileset, shown where it stands, or ion:NUMBER of one of Cesium's; empty with a key for Google's",
+        "URL of any tileset, shown where it stands, or ion:NUMBER of one of Cesium's; empty with a key for Google's. Links have it",
       control: 'text'
     },
-    key: { name: 'Key', description: 'Key or token that goes with it', control: 'text' },
+    [KEY]: {
+      name: 'Key',
+      description: 'Key or token that goes with it; this tab keeps it, and no link has it',
+      control: 'text'
+    },
     place: {
       name: 'Place',
       description: 'In tiles of the whole world',
@@ -49,7 +54,7 @@ const meta: Meta<PhotogrammetryArgs> = {
   },
   args: {
     url: '',
-    key: '',
+    [KEY]: '',
     place: 'local',
     strength: 1,
     albedo: 0.8,

@@ -1,9 +1,11 @@
 import type { AtmosphereParametersInit } from '@welkin/atmosphere'
 import { Mesh, MeshStandardMaterial, PerspectiveCamera, Scene, Vector3 } from 'three'
+import { afterLast } from './afterLast'
 import { Explorer } from './moving/Explorer'
 import { travel, TURN_SECONDS } from './moving/travel'
 import { parametersOf } from './sandbox/airArgs'
 import type { AirArgs } from './sandbox/airArgs'
+import { keepStand } from './sandbox/keepStand'
 import { planetGeometry } from './sandbox/planetMesh'
 import { EARTH, presets } from './sandbox/presets'
 import type { PresetName } from './sandbox/presets'
@@ -26,6 +28,9 @@ export interface SandboxArgs extends RendererArgs, AirArgs, LightsArgs {
   /** Direction of view above the horizontal [°]. */
   pitch: number
 }
+
+/** Time after the last change of a planet's size until it is built [ms]. */
+const SIZING = 200
 
 /** All parameters of air, sun and moon under sliders, over a planet of any size. */
 export async function createSandbox(
@@ -64,13 +69,15 @@ export async function createSandbox(
       frame: current.frame
     })
     made.atmosphere.luminanceScale = sky?.atmosphere.luminanceScale ?? 1e-4
+    const before = sky?.parameters.bottomRadius
     sky?.dispose()
     sky = made
     const { bottomRadius } = made.parameters
     center.set(0, -bottomRadius, 0)
     ground.geometry.dispose()
     ground.geometry = planetGeometry(bottomRadius)
-    travel(undefined, camera, placeCamera, 0)
+    if (before === undefined || current.frame) travel(undefined, camera, placeCamera, 0)
+    else keepStand(camera, before, bottomRadius)
   }
 
   const placeCamera = (moved: PerspectiveCamera): void => {
@@ -81,11 +88,18 @@ export async function createSandbox(
     moved.rotation.set(lift, turn, 0, 'YXZ')
   }
 
-  const applyAir = (): string[] => {
+  /** @param isSettled - True if no slider moves: a planet of another size is built then. */
+  const applyAir = (isSettled: boolean): string[] => {
     const { init, notes } = parametersOf(current, EARTH)
     const air = JSON.stringify(init)
     if (air === shownAir) return notes
-    if (sky === undefined || sky.parameters.bottomRadius !== init.bottomRadius) build(init)
+    if (sky === undefined || sky.parameters.bottomRadius !== init.bottomRadius) {
+      if (!isSettled) {
+        sized.ask()
+        return notes
+      }
+      build(init)
+    }
     const { parameters } = sky!
     // #region sandbox
     // #shown const { parameters } = atmosphere
@@ -106,10 +120,10 @@ export async function createSandbox(
   }
 
   /** Shows the arguments; what is refused leaves the picture as it is, and says so. */
-  const apply = (): void => {
+  const apply = (isSettled: boolean): void => {
     takePreset()
     const messages: string[] = []
-    for (const step of [applyAir, () => (sky?.apply(current), [])]) {
+    for (const step of [() => applyAir(isSettled), () => (sky?.apply(current), [])]) {
       try {
         messages.push(...step())
       } catch (error) {
@@ -119,7 +133,8 @@ export async function createSandbox(
     note.textContent = messages.join('\n')
     note.hidden = messages.length === 0
   }
-  apply()
+  const sized = afterLast(SIZING, () => apply(true))
+  apply(true)
 
   const elapsed = frameClock(args.frame)
   const draw = (): void => {
@@ -137,7 +152,7 @@ export async function createSandbox(
     explorer,
     current,
     apply(before) {
-      apply()
+      apply(current.frame)
       const isMoved = (['height', 'heading', 'pitch'] as const).some(
         name => before[name] !== current[name]
       )
@@ -148,6 +163,7 @@ export async function createSandbox(
       if (current.frame) await drawSettled(EXPOSURE_FRAMES, draw, () => sky?.exposure)
     },
     dispose() {
+      sized.cancel()
       note.remove()
       sky?.dispose()
       disposeMeshes([ground, ...things])

@@ -3,10 +3,11 @@ import { STILL_QUALITY } from './clouds/still'
 import { Explorer } from './moving/Explorer'
 import { changeOf, createRenderer, drawSettled, fitToCanvas, frameClock } from './scene'
 import type { RendererArgs, SceneHandle } from './scene'
-import { ShownHour } from './ShownHour'
+import { ShownHour, toHundredths } from './ShownHour'
 import { valleyFooting } from './valley/footing'
 import { HourArc } from './valley/HourArc'
 import { Readout } from './valley/readout'
+import { ShownDate, wayTo } from './valley/ShownDate'
 import { Valley, type ValleyState } from './valley/Valley'
 import type { ValleyName } from './valley/views'
 
@@ -45,7 +46,11 @@ export async function createValley(
         groundAt: place => valley.groundAt(place),
         ...valleyFooting(() => current, valley.trunkAt)
       })
-  const shown = (): ValleyState => ({ ...stateOf(current), hour: shownHour.byHand })
+  const shown = (): ValleyState => ({
+    ...stateOf(current),
+    date: shownDate.date,
+    hour: shownHour.byHand
+  })
   /** Changes by which a feature is off that is measured. */
   let off: Partial<ValleyState> = {}
   const measured = (changes: Partial<ValleyState> = {}): void => {
@@ -53,7 +58,8 @@ export async function createValley(
     valley.set({ ...shown(), ...off })
   }
   const readout = current.frame ? undefined : new Readout(canvas, renderer, shown, measured)
-  const setHour = (hour: number, isLast: boolean): void => {
+  const setHour = (asked: number, isLast: boolean): void => {
+    const hour = toHundredths(asked)
     handle.update({ hour })
     if (isLast) handle.onArgs?.({ hour })
   }
@@ -69,9 +75,12 @@ export async function createValley(
   const elapsed = frameClock(args.frame)
   let time = STILL_TIME
   const shownHour = new ShownHour(current.hour)
-  const showHour = (): void => {
+  const shownDate = new ShownDate(Number(current.date))
+  const showTime = (): void => {
     const hour = current.paused ? undefined : shownHour.next(valley.cycle.hour)
-    if (hour !== undefined) handle.onArgs?.({ hour })
+    if (hour === undefined) return
+    const today = shownDate.next(valley.cycle)
+    handle.onArgs?.({ hour, ...(today !== undefined && { date: today }) })
   }
   const draw = (): void => {
     const start = performance.now()
@@ -79,7 +88,7 @@ export async function createValley(
     explorer?.update(delta)
     valley.time = time += delta
     valley.render(delta)
-    showHour()
+    showTime()
     const spent = performance.now() - start
     const ground = valley.groundAt(camera.position)
     arc?.update(valley.cycle.hour, current.latitude, valley.cycle.season)
@@ -90,8 +99,10 @@ export async function createValley(
   const warmUp = (): void => {
     if (current.frame) ready = drawSettled(STILL.frames, draw, () => valley.exposure)
   }
+  /** Arguments that the clock changes. */
+  const moving = { hour: undefined, date: undefined }
   const isOther = changeOf()
-  isOther({ ...current, hour: undefined })
+  isOther({ ...current, ...moving })
   const handle: SceneHandle<ValleyArgs> = {
     renderer,
     scene,
@@ -110,14 +121,17 @@ export async function createValley(
       warmUp()
     },
     update(changes) {
-      const { view, hour } = current
+      const { view, hour, date } = current
       Object.assign(current, changes)
+      const isDaySet = shownDate.take(Number(current.date), Number(date), valley.cycle)
       const isSet = shownHour.take(current.hour, hour)
       // The clock goes on while features are measured.
-      const isChanged = isOther({ ...current, hour: undefined })
-      if (isSet || isChanged) readout?.reset()
+      const isChanged = isOther({ ...current, ...moving })
+      if (isSet || isDaySet || isChanged) readout?.reset()
       valley.set({ ...shown(), ...off }, current.frame)
       if (isSet) valley.cycle.hour = current.hour
+      const way = wayTo(shownDate.date, valley.cycle)
+      if (way !== 0) valley.cycle.time += way // another longitude may have another day
       if (current.view !== view) goTo(current.view, 4)
       warmUp()
     },

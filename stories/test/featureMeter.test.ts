@@ -126,12 +126,17 @@ it('measures what is on, each by its own switch', () => {
     )
     expect([name, changed.length]).toEqual([name, 1])
   }
-  // All that are switches of the panel's parts have a share of their own, but for what sets the exposure.
-  const switches = Object.keys(openingState).filter(
-    key => openingState[key as keyof typeof openingState] === true
-  )
-  const all = new Set(meteredFeatures(openingState).flatMap(({ off }) => Object.keys(off)))
-  expect(switches.filter(key => !all.has(key))).toEqual(['autoExposure'])
+})
+
+it('has a share for every switch of the panel, but for what sets the clock and the exposure', () => {
+  const switches = Object.entries(openingState).filter(([, value]) => typeof value === 'boolean')
+  const keys = switches.map(([key]) => key)
+  const state: ValleyState = {
+    ...openingState,
+    ...Object.fromEntries(keys.map(key => [key, true]))
+  }
+  const metered = new Set(meteredFeatures(state).flatMap(({ off }) => Object.keys(off)))
+  expect(keys.filter(key => !metered.has(key))).toEqual(['paused', 'autoExposure'])
 })
 
 it('lists the longest first', () => {

@@ -7,13 +7,13 @@ function shownAt(hour: number) {
   return { clock, shown: new ShownHour(hour, () => clock.now) }
 }
 
-it('shows the hour of a running clock every three seconds, in tenths that it has reached', () => {
+it('shows the hour of a running clock every three seconds, in hundredths that it has reached', () => {
   const { clock, shown } = shownAt(8)
   clock.now = 2900
   expect(shown.next(8.06)).toBeUndefined()
   clock.now = 3000
-  expect(shown.next(8.16)).toBe(8.1)
-  expect(shown.next(8.16)).toBeUndefined()
+  expect(shown.next(8.1678)).toBe(8.16)
+  expect(shown.next(8.1678)).toBeUndefined()
   clock.now = 6000
   expect(shown.next(8.2)).toBe(8.2)
 })

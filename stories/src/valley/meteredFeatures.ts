@@ -12,6 +12,7 @@ const SWITCHED = {
   precipitation: 'rain and snow',
   rainbow: 'rainbow',
   wetGround: 'wet ground and snow cover',
+  flashes: 'lightning',
   moon: 'moon',
   moonlight: 'moonlight on the land',
   stars: 'stars',

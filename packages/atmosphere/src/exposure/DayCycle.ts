@@ -57,9 +57,12 @@ const _scale = new Vector3()
  * Clock that moves sun, moon and stars, and adapts the exposure to their light.
  *
  * ```ts
- * const cycle = new DayCycle(atmosphere, { rate: 1440 })
+ * const exposure = autoExposure(pass(scene, camera), atmosphere)
+ * pipeline.outputNode = exposure
+ * const cycle = new DayCycle(atmosphere, { rate: 1440, autoExposure: exposure })
  * // per frame
- * cycle.update(deltaSeconds, camera)
+ * cycle.update(deltaSeconds)
+ * pipeline.render()
  * // to keep and to come back
  * localStorage.time = cycle.time
  * cycle.time = Number(localStorage.time)
@@ -68,8 +71,9 @@ const _scale = new Vector3()
  * It sets `atmosphere.date`, which everything in the sky follows. `time`, one number, is the state of the
  * clock; the rest is settings and the atmosphere's place.
  *
- * Exposure multiplies the `luminanceScale` that the atmosphere has when the cycle is made, unless another
- * cycle wrote that: from that it takes over. With `autoExposure` the picture sets it, and that has options of its own.
+ * With `autoExposure` the picture sets `luminanceScale`, and that has options of its own. Without, `cycle.update(deltaSeconds,
+ * camera)` takes `exposureFor`, which multiplies the `luminanceScale` that the atmosphere has when the cycle is made, unless
+ * another cycle wrote that: from that it takes over.
  */
 export class DayCycle {
   /** Shared, not owned. */
