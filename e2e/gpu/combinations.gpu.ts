@@ -11,11 +11,8 @@ const SEED = 20_260
 const COUNT = 60
 /** Least sets that a feature is in. */
 const LEAST_SETS = 5
-/** Sets besides, of stars that are painted last and what covers them, which the seed has by day alone. */
-const COVERED: FeatureName[][] = [
-  ['starsOverlay', 'clouds'],
-  ['starsOverlay', 'heightFog']
-]
+/** Set besides, of stars that are painted last and what covers them, which the seed has by day alone. */
+const COVERED: FeatureName[][] = [['starsOverlay', 'heightFog']]
 /** Textures that a stage may sample. */
 const LIMIT = 16
 /** Least part of all numbers that their parts tell, give or take a little. */
