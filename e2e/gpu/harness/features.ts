@@ -89,6 +89,22 @@ const fine: CloudQuality = {
   block: 1
 }
 
+/**
+ * White light in all directions, behind all media of the sky and bright beside what is there by night: how much of it passes tells what media
+ * let through.
+ */
+class Whiteness implements SkyLayer {
+  readonly strength = uniform(0)
+  readonly isAdditive = true
+
+  below(): ReturnType<NonNullable<SkyLayer['below']>> {
+    return { isSeen: this.strength.greaterThan(0), light: () => vec4(this.strength) }
+  }
+}
+
+/** Radiance of white surfaces, and of a white sky over the sun's irradiance: some thousands by night, and skies end at 60,000. */
+const WHITE = { surface: 1000, sky: 5e-4 }
+
 /** Layers of the sky, far before near, and media last. */
 function skyLayers(luna: Moon) {
   return {
@@ -126,6 +142,9 @@ export class FeatureStage {
   /** Strength of the ambient occlusion. */
   readonly #occlusion = uniform(0)
   readonly #air: { plain: Node; shafts: Node }
+  readonly #whiteness = new Whiteness()
+  /** Materials of what is in the scene but the terrain, and what has them shine white. */
+  readonly #glowing: ((light: number) => void)[] = []
   readonly #cloudLayers = new CloudLayers([{ ...fog, baseAltitude: 300, density: 1e-3 }])
   readonly #clouds
   readonly #depth
@@ -149,6 +168,9 @@ export class FeatureStage {
     this.#lights = { moonlight, nightLight }
     scene.add(sun, this.#sky, moonlight, nightLight)
     const material = new MeshStandardMaterial({ name: 'lit', roughness: 1 })
+    material.emissive.set(0xffffff)
+    material.emissiveIntensity = 0
+    this.#glowing.push(light => (material.emissiveIntensity = light))
     const tower = new Mesh(new BoxGeometry(60, 120, 60), material)
     tower.position.set(-60, 60, -250)
     tower.castShadow = true
@@ -189,14 +211,16 @@ export class FeatureStage {
   #lightTiles(depth: Node, lights: Light[]): SurfaceLightingNode {
     const photographed = new MeshBasicNodeMaterial({ color: 0x888888 })
     photographed.mrtNode = mrt({ unlit: vec4(1) })
+    const color = photographed.color.clone()
+    this.#glowing.push(light => photographed.color.copy(color).addScalar(light))
     const tile = new Mesh(new BoxGeometry(60, 60, 60), photographed)
     tile.position.set(90, 30, -250)
     this.#scene.add(tile)
     this.#pass.setMRT(mrt({ output, unlit: vec4(0) }))
     const mask = this.#pass.getTextureNode('unlit').r
     this.#owned.push(photographed, tile.geometry)
-    const color = this.#pass.getTextureNode()
-    return surfaceLighting(color, depth, this.#camera, lights, { mask, strength: 0 })
+    const drawn = this.#pass.getTextureNode()
+    return surfaceLighting(drawn, depth, this.#camera, lights, { mask, strength: 0 })
   }
 
   /** Three's ambient occlusion, as the README has it. */
@@ -274,6 +298,7 @@ export class FeatureStage {
     this.#compiled = names.join(' ')
     const { atmosphere } = this
     atmosphere.remove(...atmosphere.layers)
+    atmosphere.add(this.#whiteness)
     for (const name of names) {
       const layer = (this.#layers as Partial<Record<FeatureName, SkyLayer>>)[name]
       if (layer !== undefined) atmosphere.add(layer)
@@ -294,6 +319,12 @@ export class FeatureStage {
       ? precipitationOverlay(rtt(starry, null, null, exactly), this.#camera, this.#drops)
       : starry
     this.#pipeline.needsUpdate = true
+  }
+
+  /** Has all that media may be in front of shine white, or as it is. */
+  set isWhite(value: boolean) {
+    this.#whiteness.strength.value = value ? WHITE.sky : 0
+    for (const glow of this.#glowing) glow(value ? WHITE.surface : 0)
   }
 
   /** @param warmUp - Frames before: three's shadows are those of two frames before, in a pass. */

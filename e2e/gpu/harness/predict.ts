@@ -88,26 +88,61 @@ export type Range = readonly [least: number, most: number]
 export interface Part {
   readonly name: FeatureName
   readonly value: number
+  /** Least and greatest part of the light behind it that passes, as measured apart; by default any, from none to all. */
+  readonly passes?: Range
+  /** Most light of it that media may scatter into a pixel; by default any. */
+  readonly scattered?: number
 }
 
-const kindOf = ({ name }: Part): Kind => features[name]
+/** Features that dim what is behind them, in every pixel that they fill. */
+export const covers = ['haze', 'heightFog', 'distanceFog', 'clouds', 'drops'] as const
 
-/**
- * Range under what passes an unknown part of the light, from none to all, and has light of its own: with nothing else it makes `value`
- * of `none`.
- */
-const under = ([least, most]: Range, none: number, value: number): Range => [
-  value + Math.min(0, least - none),
-  value + Math.max(0, most - none)
-]
+const kindOf = ({ name }: Part): Kind => features[name]
+const ANY: Range = [0, 1]
+
+/** Range of a number beyond which it says little: that part of its middle, and an error. */
+const NARROW = 0.3
+
+/** True if a range is a value, give or take a little. */
+export function isKnown(range: Range | null, error: number): range is Range {
+  if (range === null || !Number.isFinite(range[1])) return false
+  return range[1] - range[0] <= (NARROW * (range[0] + range[1])) / 2 + error
+}
+
+/** Range under what passes a part of the light and has light of its own: with nothing else it makes `value` of `none`. */
+function under(
+  [least, most]: Range,
+  none: number,
+  { value, passes = ANY }: Omit<Part, 'name'>
+): Range {
+  const change = (part: number, behind: number): number => (part === 0 ? 0 : part * (behind - none))
+  return [
+    value + Math.min(...passes.map(part => change(part, least))),
+    value + Math.max(...passes.map(part => change(part, most)))
+  ]
+}
 
 const shift = ([least, most]: Range, by: number): Range => [least + by, most + by]
 
-/** Several media that change a pixel: light of each is dimmed by the others, which have as much or more of their own, or as little. */
-function underMedia(media: readonly Part[], none: number): Range | null {
+/**
+ * Media in front of each other, in any order or mixed: they all dim what is behind, and the light of each is dimmed by the others or not.
+ * If all are as bright as what is there without them, or brighter, so are they together; and so if they are darker.
+ */
+function underMedia([least, most]: Range, none: number, media: readonly Part[]): Range {
+  const product = (factors: readonly number[]): number =>
+    factors.reduce((all, each) => all * each, 1)
+  const passes = media.map(part => part.passes ?? ANY)
+  let dimmest = least * product(passes.map(([low]) => low))
+  let brightest = most * product(passes.map(([, high]) => high))
+  for (const [i, { value }] of media.entries()) {
+    const others = passes.filter((_, k) => k !== i).map(([low]) => low)
+    dimmest += Math.max(value - passes[i][1] * none, 0) * product(others)
+    brightest += Math.max(value - passes[i][0] * none, 0)
+  }
   const values = media.map(({ value }) => value)
-  if (values.every(value => value >= none)) return [Math.min(...values), Infinity]
-  return values.every(value => value <= none) ? [0, Math.max(...values)] : null
+  if (Math.min(least, ...values) >= none) dimmest = Math.max(dimmest, Math.min(...values))
+  if (Math.max(most, ...values) <= none) brightest = Math.min(brightest, Math.max(...values))
+  return [dimmest, brightest]
 }
 
 /** A pixel that ground fills. It is lit as surfaces are, and media and shade end at it, so that they are others than without it. */
@@ -135,19 +170,18 @@ export function predict(none: number, parts: readonly Part[], error: number): Ra
     range = onGround(changing, parts)
   } else {
     for (const { value } of of('sky')) range = shift(range, value - none)
-    for (const { value } of of('disc'))
-      range =
-        range[0] === range[1] && range[0] === none ? [value, value] : under(range, none, value)
+    for (const part of of('disc', [...parts])) range = under(range, none, part)
     for (const { value } of of('light')) range = shift(range, value - none)
-    for (const { value } of of('corners', [...parts])) range = under(range, none, value)
+    for (const part of of('corners', [...parts])) range = under(range, none, part)
     const isAsBefore = range[0] === none && range[1] === none
     for (const { value } of of('tiles')) {
       if (!isAsBefore) return null
       range = [value, value]
     }
-    const shade = of('shade')
-    // Shade takes light of the air alone.
-    for (const { value } of shade) range = shift(range, value - none)
+    // Shade takes light of the air alone; fog may hide that.
+    const isFoggy = of('medium', [...parts]).length > 0
+    for (const { value } of of('shade'))
+      range = [range[0] + value - none, isFoggy ? range[1] : range[1] + value - none]
     range = throughMedia(range, none, parts, changing)
   }
   if (range === null) return null
@@ -164,36 +198,35 @@ export function predict(none: number, parts: readonly Part[], error: number): Ra
     const isHazy = hazes(parts) && !hazes(changing)
     range = [Math.min(range[0], none), isHazy ? Infinity : Math.max(range[1], none)]
   }
-  for (const { value } of of('drops', [...parts])) range = under(range, none, value)
+  for (const part of of('drops', [...parts])) range = under(range, none, part)
   return [Math.max(range[0], 0), range[1]]
 }
+
+/** Part of the light that passes where there is nothing in the way, but for rounding. */
+const CLEAR = 0.999
+
+/** True where haze or distance fog leave the sky as it is: they dim what stands before it all the same. */
+const leavesSky = ({ name, passes }: Part): boolean =>
+  (name === 'haze' || name === 'distanceFog') && passes !== undefined && passes[0] > CLEAR
 
 function throughMedia(
   behind: Range,
   none: number,
   parts: readonly Part[],
   changing: readonly Part[]
-): Range | null {
+): Range {
   const media = parts.filter(part => kindOf(part) === 'medium')
-  const own = media.filter(part => changing.includes(part))
-  let range: Range | null = behind
-  if (own.length > 1) {
-    if (behind[0] !== none || behind[1] !== none) return null
-    range = underMedia(own, none)
-  } else {
-    for (const { value } of own) range = under(range, none, value)
-    // In the dark a medium shows nothing of its own, and dims the others all the same.
-    for (const each of media) if (!own.includes(each)) range = under(range, none, none)
-  }
-  if (range === null) return null
-  // Media scatter the moon's light, and distance fog has the colour of the sky behind.
-  const scatters = parts.some(
-    part =>
-      kindOf(part) === 'disc' ||
-      (kindOf(part) === 'sky' && media.some(({ name }) => name === 'distanceFog'))
-  )
-  if (media.length > 0 && scatters) range = [range[0], Infinity]
+  const leaving = media.filter(part => leavesSky(part) && !changing.includes(part))
+  const filling = media.filter(part => !leaving.includes(part))
+  let range = behind
+  if (filling.length === 1) range = under(range, none, filling[0])
+  else if (filling.length > 1) range = underMedia(range, none, filling)
+  if (filling.some(({ passes = ANY }) => passes[0] < CLEAR))
+    for (const { value } of leaving) range = under(range, none, { value })
+  if (media.length === 0) return range
+  // Media scatter the moon's light.
+  for (const part of parts)
+    if (kindOf(part) === 'disc') range = [range[0], range[1] + (part.scattered ?? Infinity)]
   // Fog that lies in shadow lacks what the shafts take of its own light.
-  const isShaded = media.length > 0 && parts.some(part => kindOf(part) === 'shade')
-  return isShaded ? [0, range[1]] : range
+  return parts.some(part => kindOf(part) === 'shade') ? [0, range[1]] : range
 }
