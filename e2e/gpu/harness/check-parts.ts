@@ -22,7 +22,7 @@ const DISC = 1e-3
 /** Part of the light behind them that features let through, by number of a picture. */
 type Passing = ReadonlyMap<FeatureName, Float32Array>
 
-/** What features let through: their light over white less that over what is there, beside the same without them. */
+/** Part of the light behind features that passes them: their light over white less that over what is there, beside the same without them. */
 export function measurePassing(
   pictureOf: (names: FeatureName[], isWhite: boolean) => Picture
 ): Map<FeatureName, Float32Array> {
