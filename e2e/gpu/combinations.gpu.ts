@@ -11,8 +11,11 @@ const SEED = 20_260
 const COUNT = 60
 /** Least sets that a feature is in. */
 const LEAST_SETS = 5
-/** Set besides, of stars that are painted last and what covers them, which the seed has by day alone. */
-const COVERED: FeatureName[][] = [['starsOverlay', 'heightFog']]
+/** Sets besides, of stars that are painted last and what covers them, which the seed has by day alone. */
+const COVERED: FeatureName[][] = [
+  ['starsOverlay', 'clouds'],
+  ['starsOverlay', 'heightFog']
+]
 /** Textures that a stage may sample. */
 const LIMIT = 16
 /** Least part of all numbers that their parts tell, give or take a little. */
@@ -78,6 +81,8 @@ const keyOf = (names: readonly FeatureName[], hour: Hour, isWhite = false): stri
 /** Frames before the first picture of an hour, and before the first with clouds: their shadows are drawn by strips. */
 const WARM_UP = 4
 const CLOUDS_WARM_UP = 14
+/** Frames before other pictures with clouds: by night clouds still settle. */
+const CLOUDS_SETTLING = 8
 
 /**
  * Draws sets of features, those of an hour after each other, with clouds last; shaders are compiled with and without
@@ -104,7 +109,7 @@ async function drawAll(
           stage.show(names)
           stage.isWhite = isWhite
           drawn.set(key, await stage.draw(hour, warmUp))
-          warmUp = 0
+          warmUp = hasClouds ? CLOUDS_SETTLING : 0
         }
         stage.isWhite = false
       }
