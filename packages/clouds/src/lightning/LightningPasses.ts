@@ -8,7 +8,6 @@ import { MathUtils, Vector3, Vector4 } from 'three'
 import {
   Fn,
   If,
-  atan,
   float,
   int,
   isBackgroundDepth,
@@ -49,6 +48,7 @@ import { hazeAt } from './hazeAt'
 import { CLOUD_SOFTNESS, StormDensity } from './StormDensity'
 import { channelColor } from './tsl/channelColor'
 import { limbDarkening } from './tsl/limbDarkening'
+import { lineAngle } from './tsl/lineLight'
 
 /** Softness of light in haze: a line is as soft as its picture's pixels are wide [m]. */
 const HAZE_SOFTNESS = 25
@@ -171,8 +171,8 @@ export class LightningPasses {
   }
 
   /**
-   * Face of a pixel's clouds: their opacity around, its distance [m] and normal, and from 0 to 1 how much of a face they have. A plane through those of nine marched pixels that are as far as the pixel's own, by history: single ones
-   * have the march's grain. To be called inside of a shader function, outside of branches.
+   * Face of a pixel's clouds: opacity around it, its distance [m] and normal, and from 0 to 1 how much of a face they have. It is a plane
+   * through those of nine marched pixels that are as far as the pixel's own, by history: single ones have the march's grain. To be called inside of a shader function, outside of branches.
    *
    * @param here - Place in the picture, y down.
    */
@@ -254,9 +254,7 @@ export class LightningPasses {
         .add(HAZE_SOFTNESS ** 2)
         .toConst() as Float
       const b = square.sqrt().toConst() as Float
-      // As in `meanInverseSquare`.
-      const angle = atan(b.mul(end), square.sub(along.mul(end.sub(along)))) as unknown as Float
-      sum.addAssign(angle.mul(point.w).div(b))
+      sum.addAssign(lineAngle(b, square, along, end).mul(point.w).div(b))
     })
     return sum.mul(STORED_POWER / (3 * 16 * Math.PI ** 2)).toConst()
   }

@@ -2,6 +2,15 @@ import { Fn, atan } from 'three/tsl'
 import { layout, type Float, type Vec3 } from '../../tsl-types'
 
 /**
+ * Angle atan((L − a)/b) + atan(a/b) under which a line is seen [rad], by one arctangent.
+ *
+ * @param b - Distance from the line's axis [m], and `square` of it.
+ * @param foot - a, place of the foot on the line, of `length` L [m].
+ */
+export const lineAngle = (b: Float, square: Float, foot: Float, length: Float): Float =>
+  atan(b.mul(length), square.sub(foot.mul(length.sub(foot))))
+
+/**
  * Mean of 1/(r² + s²) over a straight line, r the distance to a place [1/m²].
  *
  * With b² = h² + s², h the distance to the line's axis: [atan((L − a)/b) + atan(a/b)] / (b L), a the foot's place on a line of length L. It
@@ -18,9 +27,7 @@ export const meanInverseSquare = /*#__PURE__*/ Fn(
     const foot = start.dot(line).div(length).negate().toConst() as Float
     const aside = start.add(line.mul(foot.div(length))).toConst() as Vec3
     const b = aside.dot(aside).add(softness.mul(softness)).sqrt().toConst() as Float
-    // The sum of both, by one arctangent.
-    const angle = atan(b.mul(length), b.mul(b).sub(foot.mul(length.sub(foot)))) as unknown as Float
-    return angle.div(b.mul(length))
+    return lineAngle(b, b.mul(b), foot, length).div(b.mul(length))
   },
   layout('meanInverseSquare', 'float', { start: 'vec3', end: 'vec3', softness: 'float' })
 )
