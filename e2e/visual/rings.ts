@@ -10,6 +10,9 @@ export interface RingView {
   readonly aside: number
 }
 
+/** Length of arcs that are looked at one by one [°]. */
+const ARC = 6
+
 type Band = readonly [from: number, to: number]
 
 /** A ring about the sun, or about the point opposite it: a band of it, and those to either side of it [°]. */
@@ -19,8 +22,6 @@ export interface Ring {
   readonly sides: readonly [Band, Band]
   /** Quantity of which the band has more than its sides: red less blue, or light. */
   readonly has: 'red' | 'light'
-  /** Length of arcs that are looked at one by one [°]. */
-  readonly arc: number
 }
 
 /** Rings by their angles. */
@@ -33,8 +34,7 @@ export const RINGS = {
       [40, 41.2],
       [44, 46]
     ],
-    has: 'red',
-    arc: 6
+    has: 'red'
   },
   /** The other way round. */
   secondary: {
@@ -44,8 +44,7 @@ export const RINGS = {
       [46, 48],
       [52.2, 53.8]
     ],
-    has: 'red',
-    arc: 6
+    has: 'red'
   },
   /** White and broad: droplets of 9 µm. */
   fogbow: {
@@ -55,19 +54,7 @@ export const RINGS = {
       [28, 32],
       [44, 48]
     ],
-    has: 'light',
-    arc: 6
-  },
-  /** The first red ring of droplets of 8 µm. */
-  glory: {
-    about: 'opposite',
-    band: [2.2, 2.7],
-    sides: [
-      [1.2, 1.7],
-      [3.1, 3.6]
-    ],
-    has: 'red',
-    arc: 12
+    has: 'light'
   },
   /** Red at its inner edge; dark inside. */
   halo: {
@@ -77,8 +64,7 @@ export const RINGS = {
       [19, 20.5],
       [23.2, 24.7]
     ],
-    has: 'red',
-    arc: 6
+    has: 'red'
   }
 } as const satisfies Record<string, Ring>
 
@@ -123,13 +109,13 @@ function aroundMiddle(
 export function degreesOf(ring: Ring, picture: PNG, view: RingView): number {
   const bands = [ring.band, ...ring.sides]
   /** Sums of what the ring has, and counts, of the bands by arcs. */
-  const arcs = Array.from({ length: 360 / ring.arc }, () => bands.map(() => [0, 0]))
+  const arcs = Array.from({ length: 360 / ARC }, () => bands.map(() => [0, 0]))
   for (let y = 0; y < picture.height; y++)
     for (let x = 0; x < picture.width; x++) {
       const [away, around] = aroundMiddle(ring, view, picture, x, y)
       const band = bands.findIndex(([from, to]) => away >= from && away < to)
       if (band < 0) continue
-      const sums = arcs[Math.floor((around + 180) / ring.arc) % arcs.length][band]
+      const sums = arcs[Math.floor((around + 180) / ARC) % arcs.length][band]
       const pixel = 4 * (y * picture.width + x)
       const [red, green, blue] = picture.data.subarray(pixel, pixel + 3)
       sums[0] += ring.has === 'red' ? red - blue : (red + green + blue) / 3
@@ -139,8 +125,8 @@ export function degreesOf(ring: Ring, picture: PNG, view: RingView): number {
   for (const arc of arcs) {
     if (arc.some(([, count]) => count < LEAST)) continue
     const [own, ...sides] = arc.map(([sum, count]) => sum / count)
-    if (own - Math.max(...sides) > SEEN) found += ring.arc
-    if (Math.min(...sides) - own > SEEN) found -= ring.arc
+    if (own - Math.max(...sides) > SEEN) found += ARC
+    if (Math.min(...sides) - own > SEEN) found -= ARC
   }
   return Math.max(found, 0)
 }

@@ -239,8 +239,7 @@ export const WorldClouds: Story = {
     altitude: 400_000,
     heading: 235,
     pitch: -28
-  },
-  tags: ['screenshot', 'webgpu-only']
+  }
 }
 
 /** Cloud cover of a real day, from 12,000 km. */

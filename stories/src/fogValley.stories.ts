@@ -55,7 +55,7 @@ export default meta
 type Story = StoryObj<FogValleyArgs>
 
 /** The sun is 4° up, and shines through the mist. */
-export const Sunrise: Story = { tags: ['screenshot'] }
+export const Sunrise: Story = { tags: ['screenshot', 'webgpu-only'] }
 
 /** Inside the mist. */
 export const Inside: Story = {

@@ -59,7 +59,7 @@ export default meta
 type Story = StoryObj<GlobeArgs>
 
 /** Seven on a summer morning, eye height. */
-export const Street: Story = { tags: ['screenshot'] }
+export const Street: Story = { tags: ['screenshot', 'webgpu-only'] }
 
 export const Rooftops: Story = {
   name: '1 km',
@@ -80,8 +80,7 @@ export const Orbit: Story = {
 /** The terminator crosses the Indian Ocean. */
 export const WholeGlobe: Story = {
   name: '20,000 km',
-  args: { place: 'globe', hour: 1, exposure: -1 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { place: 'globe', hour: 1, exposure: -1 }
 }
 
 /** Eye height, between ridges of real heights. */

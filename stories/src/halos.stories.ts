@@ -65,7 +65,6 @@ export const Halo: Story = {
 /** The sun behind an aeroplane: coloured rings on a thin deck below, about the point where its shadow falls. */
 export const Glory: Story = {
   name: 'Glory from an aeroplane',
-  tags: ['screenshot', 'webgpu-only'],
   args: { view: 'glory', ...argsOf(VIEWS.glory) }
 }
 
@@ -82,7 +81,6 @@ export const Rainbow: Story = {
 
 /** The sun behind one's back, and mist before one. */
 export const Fogbow: Story = {
-  tags: ['screenshot', 'webgpu-only'],
   args: { view: 'fogbow', ...argsOf(VIEWS.fogbow) }
 }
 

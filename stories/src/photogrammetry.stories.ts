@@ -73,12 +73,11 @@ export default meta
 type Story = StoryObj<PhotogrammetryArgs>
 
 /** An evening's light and shadows on local tiles, which have neither. */
-export const Local: Story = { tags: ['screenshot'] }
+export const Local: Story = { tags: ['screenshot', 'webgpu-only'] }
 
 /** Moonlight on the same tiles, whose photographs were taken by day. */
 export const Night: Story = {
-  args: { day: Date.UTC(2026, 8, 27), hour: 4.5, exposure: 0.5 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { day: Date.UTC(2026, 8, 27), hour: 4.5, exposure: 0.5 }
 }
 
 /** The photographs as they are, in today's air. */

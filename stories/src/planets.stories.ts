@@ -74,8 +74,7 @@ export const MarsSunset: Story = {
 }
 
 export const Titan: Story = {
-  args: { planet: 'titan', height: 6e6, pitch: -90, sunElevation: 10, exposure: -0.5 },
-  tags: ['screenshot', 'webgpu-only']
+  args: { planet: 'titan', height: 6e6, pitch: -90, sunElevation: 10, exposure: -0.5 }
 }
 
 export const TitanGround: Story = { args: { planet: 'titan', sunElevation: 40, exposure: 1 } }
